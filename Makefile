@@ -1,0 +1,38 @@
+# Two words for a stranger: `make demo` and `make test`. Both make .venv when it is missing.
+PYTHON ?= python3
+BIN := .venv/bin
+READY := .venv/.ready
+
+.PHONY: demo test check format lint types arrows bench clean
+
+demo: $(READY)            ## a simulated scan through the whole chain, then the report
+	$(BIN)/prunus demo -o prunus-out/demo
+
+test: $(READY)            ## the tests, import arrows and laws among them
+	$(BIN)/python -m pytest
+
+check: format lint types test   ## all that CI asks for
+
+format: $(READY)
+	$(BIN)/ruff format --check .
+
+lint: $(READY)
+	$(BIN)/ruff check .
+
+types: $(READY)
+	$(BIN)/mypy
+
+arrows: $(READY)          ## the floor plan alone (also part of `make test`)
+	$(BIN)/python -m pytest tests/test_import_arrows.py
+
+bench: $(READY)           ## measure; figures go to the screen
+	$(BIN)/python -m bench
+
+$(READY): pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet -e ".[dev]"
+	touch $(READY)
+
+clean:
+	rm -rf .venv prunus-out

@@ -1,0 +1,5 @@
+"""The one exception that the library raises on purpose."""
+
+
+class PrunusError(ValueError):
+    """Bad input: the message names the file or field, what was found and what was expected."""

@@ -1,0 +1,25 @@
+"""The values that walk through the hall. Frozen: a change is a new value.
+
+The letters, said once: P points, N superpoints, E candidate edges, M skeleton nodes, T tips,
+K candidates (the population).
+"""
+
+from prunus.model.arrays import Bools, Floats, Ints
+from prunus.model.cloud import FRAMES, PointCloud, RigidMotion
+from prunus.model.graph import CandidateGraph, ScoredGraph, SeededGraph, Superpoints
+from prunus.model.skeleton import Label, Skeleton
+
+__all__ = [
+    "FRAMES",
+    "Bools",
+    "CandidateGraph",
+    "Floats",
+    "Ints",
+    "Label",
+    "PointCloud",
+    "RigidMotion",
+    "ScoredGraph",
+    "SeededGraph",
+    "Skeleton",
+    "Superpoints",
+]

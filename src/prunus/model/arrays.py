@@ -1,0 +1,35 @@
+"""The array types of the model, and the one way arrays are frozen."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+Bytes = NDArray[np.uint8]
+
+GRID = 2.0**-20
+"""Coordinates are held on a grid of about a micrometre (metres). See `snapped`."""
+
+
+def frozen(values: ArrayLike, dtype: Any, shape: tuple[int | None, ...]) -> NDArray[Any]:
+    """A read-only array of that type and shape (None = any length); ValueError otherwise."""
+    array = np.array(values, dtype=dtype)
+    fits = array.ndim == len(shape) and all(
+        want is None or want == got for want, got in zip(shape, array.shape, strict=False)
+    )
+    if not fits:
+        raise ValueError(f"expected an array of shape {shape}, found {array.shape}")
+    array.setflags(write=False)
+    return array
+
+
+def snapped(xyz: Floats) -> Floats:
+    """Coordinates rounded to `GRID`.
+
+    On the grid, sums of coordinates are exact, so they do not depend on the order of summation,
+    and a moved or half-turned cloud leads to the very same decisions.
+    """
+    return np.asarray(np.rint(xyz / GRID) * GRID)

@@ -1,0 +1,112 @@
+"""A point cloud in the house frame, and the way back to the frame of its file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from prunus.errors import PrunusError
+from prunus.model.arrays import Bytes, Floats, frozen, snapped
+
+FRAMES: dict[str, Floats] = {
+    "z-up": np.eye(3),
+    "optical": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
+}
+"""Named input frames -> rotation (3, 3) into the house frame: X along the row, Y depth, Z up.
+
+`optical` is a camera's frame: x right, y down, z forward.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class RigidMotion:
+    """A rotation (3, 3), then a translation (3,), metres."""
+
+    rotation: Floats
+    translation: Floats
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rotation", frozen(self.rotation, np.float64, (3, 3)))
+        object.__setattr__(self, "translation", frozen(self.translation, np.float64, (3,)))
+
+    def apply(self, xyz: ArrayLike) -> Floats:
+        """The points (..., 3) moved."""
+        return np.asarray(xyz, dtype=np.float64) @ self.rotation.T + self.translation
+
+    def inverse(self) -> RigidMotion:
+        """The motion back."""
+        return RigidMotion(self.rotation.T, -self.rotation.T @ self.translation)
+
+    @classmethod
+    def identity(cls) -> RigidMotion:
+        """The motion that moves nothing."""
+        return cls(np.eye(3), np.zeros(3))
+
+
+@dataclass(frozen=True, eq=False)
+class PointCloud:
+    """Points xyz (P, 3) in the house frame, metres, around their own middle; optional rgb (P, 3).
+
+    `to_input` is the rigid motion back to the frame in which the cloud came.
+    Make one with `PointCloud.from_xyz`.
+    """
+
+    xyz: Floats
+    to_input: RigidMotion
+    rgb: Bytes | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "xyz", frozen(self.xyz, np.float64, (None, 3)))
+        if self.rgb is not None:
+            object.__setattr__(self, "rgb", frozen(self.rgb, np.uint8, (len(self.xyz), 3)))
+
+    def __len__(self) -> int:
+        return len(self.xyz)
+
+    @classmethod
+    def from_xyz(cls, xyz: ArrayLike, frame: str = "z-up", rgb: Bytes | None = None) -> PointCloud:
+        """A cloud from points (P, 3), metres, in a named frame (see `FRAMES`).
+
+        The points are turned into the house frame and shifted to a local origin in double
+        precision, so that large coordinates (UTM) keep their millimetres.
+        Raises PrunusError on an unknown frame, a wrong shape, no points, NaN or infinity.
+        """
+        points = _checked(xyz)
+        if frame not in FRAMES:
+            raise PrunusError(f"unknown frame {frame!r}; expected one of {sorted(FRAMES)}")
+        rotation = FRAMES[frame]
+        turned = points @ rotation.T
+        middle = (turned.min(axis=0) + turned.max(axis=0)) / 2
+        back = RigidMotion(rotation, -middle).inverse()
+        return cls(snapped(turned - middle), back, rgb)
+
+    def take(self, rows: ArrayLike) -> PointCloud:
+        """The cloud of these rows only, in the same frame."""
+        rgb = None if self.rgb is None else self.rgb[rows]
+        return PointCloud(self.xyz[rows], self.to_input, rgb)
+
+    def sample(self, count: int | None, rng: np.random.Generator) -> PointCloud:
+        """At most `count` points drawn at random without replacement (None keeps all)."""
+        if count is None or count >= len(self):
+            return self
+        return self.take(np.sort(rng.choice(len(self), count, replace=False, shuffle=False)))
+
+
+def _checked(xyz: ArrayLike) -> Floats:
+    try:
+        points = np.asarray(xyz, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise PrunusError(f"the cloud is not an array of numbers: {error}") from error
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise PrunusError(f"the cloud has shape {points.shape}; expected (P, 3)")
+    if len(points) == 0:
+        raise PrunusError("the cloud holds no points; expected at least one")
+    bad = ~np.isfinite(points).all(axis=1)
+    if bad.any():
+        raise PrunusError(
+            f"{bad.sum()} of {len(points)} points hold NaN or infinity "
+            f"(the first is point {int(bad.argmax())}); expected finite coordinates"
+        )
+    return points

@@ -1,0 +1,115 @@
+"""One type per stage; each holds the one before it, and no field is ever optional."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from prunus.model.arrays import Floats, Ints, frozen
+from prunus.model.cloud import PointCloud
+
+
+@dataclass(frozen=True, eq=False)
+class Superpoints:
+    """Superpoints xyz (N, 3) and their points.
+
+    Superpoint n has the points `members[start[n]:start[n + 1]]` of the cloud: those within
+    `radius` (r_super, metres) of it. Balls overlap, so membership is many-to-many.
+    """
+
+    cloud: PointCloud
+    xyz: Floats
+    start: Ints
+    members: Ints
+    radius: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "xyz", frozen(self.xyz, np.float64, (None, 3)))
+        object.__setattr__(self, "start", frozen(self.start, np.int64, (len(self.xyz) + 1,)))
+        object.__setattr__(self, "members", frozen(self.members, np.int64, (None,)))
+
+    def __len__(self) -> int:
+        return len(self.xyz)
+
+    def points_near(self, nodes: Ints) -> Ints:
+        """Indices of the points that belong to any of these superpoints, sorted."""
+        runs = [self.members[self.start[n] : self.start[n + 1]] for n in nodes]
+        return np.unique(np.concatenate(runs)) if runs else np.zeros(0, np.int64)
+
+    @cached_property
+    def unused_points(self) -> int:
+        """How many points belong to no superpoint."""
+        return len(self.cloud) - len(np.unique(self.members))
+
+
+@dataclass(frozen=True, eq=False)
+class CandidateGraph:
+    """Candidate edges (E, 2): undirected pairs i < j of superpoints, sorted."""
+
+    superpoints: Superpoints
+    edges: Ints
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "edges", frozen(self.edges, np.int64, (None, 2)))
+
+    @property
+    def xyz(self) -> Floats:
+        """The superpoints (N, 3)."""
+        return self.superpoints.xyz
+
+
+@dataclass(frozen=True, eq=False)
+class ScoredGraph:
+    """Confidence (E,) in [0, 1] for each candidate edge, and the name of who gave it."""
+
+    candidates: CandidateGraph
+    confidence: Floats
+    scorer: str
+
+    def __post_init__(self) -> None:
+        shape = (len(self.candidates.edges),)
+        object.__setattr__(self, "confidence", frozen(self.confidence, np.float64, shape))
+
+    @property
+    def xyz(self) -> Floats:
+        """The superpoints (N, 3)."""
+        return self.candidates.xyz
+
+    @property
+    def edges(self) -> Ints:
+        """The candidate edges (E, 2)."""
+        return self.candidates.edges
+
+
+@dataclass(frozen=True, eq=False)
+class SeededGraph:
+    """The base (a superpoint) and the tips (T,) (superpoints, sorted)."""
+
+    scored: ScoredGraph
+    base: int
+    tips: Ints
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "tips", frozen(self.tips, np.int64, (None,)))
+
+    @property
+    def superpoints(self) -> Superpoints:
+        """The superpoints and the cloud below."""
+        return self.scored.candidates.superpoints
+
+    @property
+    def xyz(self) -> Floats:
+        """The superpoints (N, 3)."""
+        return self.scored.xyz
+
+    @property
+    def edges(self) -> Ints:
+        """The candidate edges (E, 2)."""
+        return self.scored.edges
+
+    @property
+    def confidence(self) -> Floats:
+        """The confidence (E,)."""
+        return self.scored.confidence

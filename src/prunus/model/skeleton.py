@@ -1,0 +1,165 @@
+"""The labelled skeleton: a table of nodes in which a cycle cannot be written down."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from prunus.model.arrays import Bools, Floats, Ints, frozen
+from prunus.model.cloud import RigidMotion
+
+if TYPE_CHECKING:
+    import networkx
+
+
+class Label(IntEnum):
+    """What a piece of wood is. The value is the paper's Order (sec. Topological constraints)."""
+
+    TRUNK = 0
+    SUPPORT = 1
+    LEADER = 2
+    SIDE_BRANCH = 3
+
+    @property
+    def word(self) -> str:
+        """The name in files: trunk, support, leader, side_branch."""
+        return self.name.lower()
+
+    @classmethod
+    def from_word(cls, word: str) -> Label:
+        """The label of that name; ValueError for any other word."""
+        try:
+            return cls[word.upper()]
+        except KeyError:
+            raise ValueError(
+                f"unknown label {word!r}; expected one of {[x.word for x in cls]}"
+            ) from None
+
+
+@dataclass(frozen=True, eq=False)
+class Skeleton:
+    """A tree of M nodes: row 0 is the base, and every other row hangs on an earlier one.
+
+    xyz (M, 3) metres; parent (M,) with parent[i] < i and -1 at row 0; label (M,) of the edge from
+    the parent (row 0 repeats that of the first edge); confidence (M,) of that edge, NaN = unknown;
+    radius (M,) metres, NaN = unknown; superpoint (M,), -1 = none.
+    """
+
+    xyz: Floats
+    parent: Ints
+    label: NDArray[np.int8]
+    confidence: Floats
+    radius: Floats
+    superpoint: Ints
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "xyz", frozen(self.xyz, np.float64, (None, 3)))
+        size = (len(self.xyz),)
+        object.__setattr__(self, "parent", frozen(self.parent, np.int64, size))
+        object.__setattr__(self, "label", frozen(self.label, np.int8, size))
+        object.__setattr__(self, "confidence", frozen(self.confidence, np.float64, size))
+        object.__setattr__(self, "radius", frozen(self.radius, np.float64, size))
+        object.__setattr__(self, "superpoint", frozen(self.superpoint, np.int64, size))
+        self._check()
+
+    def _check(self) -> None:
+        if len(self) == 0:
+            raise ValueError("a skeleton has at least its base; found no nodes")
+        if not np.isfinite(self.xyz).all():
+            raise ValueError("a skeleton's nodes are finite; found NaN or infinity")
+        rows = np.arange(len(self))
+        bad = (self.parent >= rows) | (self.parent < np.where(rows == 0, -1, 0))
+        if bad.any():
+            row = int(bad.argmax())
+            raise ValueError(
+                f"parent[{row}] is {self.parent[row]}; "
+                "expected -1 at row 0 and an earlier row elsewhere"
+            )
+        if not np.isin(self.label, [int(label) for label in Label]).all():
+            raise ValueError(f"labels are 0 to {max(Label)}; found {np.unique(self.label)}")
+
+    @classmethod
+    def build(
+        cls,
+        xyz: ArrayLike,
+        parent: ArrayLike,
+        label: ArrayLike,
+        *,
+        confidence: ArrayLike | None = None,
+        radius: ArrayLike | None = None,
+        superpoint: ArrayLike | None = None,
+    ) -> Skeleton:
+        """A skeleton from its columns; what is not given is unknown."""
+        rows = len(np.asarray(xyz))
+        unknown = np.full(rows, np.nan)
+        return cls(
+            np.asarray(xyz, np.float64),
+            np.asarray(parent, np.int64),
+            np.asarray(label, np.int8),
+            unknown if confidence is None else np.asarray(confidence, np.float64),
+            unknown if radius is None else np.asarray(radius, np.float64),
+            np.full(rows, -1) if superpoint is None else np.asarray(superpoint, np.int64),
+        )
+
+    def __len__(self) -> int:
+        return len(self.xyz)
+
+    @property
+    def edges(self) -> Ints:
+        """Edges (M - 1, 2), parent -> child; edge i ends in row i + 1."""
+        return np.column_stack([self.parent[1:], np.arange(1, len(self))])
+
+    @property
+    def edge_vectors(self) -> Floats:
+        """(M, 3) from the parent to the node; zero at row 0."""
+        vectors = self.xyz - self.xyz[np.maximum(self.parent, 0)]
+        vectors[0] = 0.0
+        return np.asarray(vectors)
+
+    @property
+    def lengths(self) -> Floats:
+        """Length (M,) of the edge from the parent, metres; 0 at row 0."""
+        return np.asarray(np.linalg.norm(self.edge_vectors, axis=1))
+
+    def edges_with(self, label: Label) -> Bools:
+        """Which rows (M,) end an edge of that label (never row 0)."""
+        chosen = self.label == label
+        chosen[0] = False
+        return chosen
+
+    def with_radius(self, radius: ArrayLike) -> Skeleton:
+        """The same skeleton with other radii (M,)."""
+        return replace(self, radius=radius)
+
+    def moved(self, motion: RigidMotion) -> Skeleton:
+        """The same skeleton in another frame."""
+        return replace(self, xyz=motion.apply(self.xyz))
+
+    def to_networkx(self) -> networkx.DiGraph[int]:
+        """A networkx DiGraph, parent -> child.
+
+        Nodes carry `xyz`, `radius` and `superpoint`; edges `label` (word), `confidence`, `length`.
+        """
+        import networkx as nx
+
+        graph: Any = nx.DiGraph()
+        for row in range(len(self)):
+            graph.add_node(
+                row,
+                xyz=tuple(self.xyz[row].tolist()),
+                radius=float(self.radius[row]),
+                superpoint=int(self.superpoint[row]),
+            )
+        for row in range(1, len(self)):
+            graph.add_edge(
+                int(self.parent[row]),
+                row,
+                label=Label(self.label[row]).word,
+                confidence=float(self.confidence[row]),
+                length=float(self.lengths[row]),
+            )
+        return graph
