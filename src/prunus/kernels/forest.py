@@ -1,0 +1,42 @@
+"""Minimum spanning forest and connected components, by union and find."""
+
+import numpy as np
+
+from prunus.kernels.compiled import kernel
+from prunus.model.arrays import Bools, Ints
+
+
+@kernel
+def root_of(parent: Ints, node: int) -> int:
+    """The representative of the node's set; halves the path on the way."""
+    while parent[node] != node:
+        parent[node] = parent[parent[node]]
+        node = parent[node]
+    return node
+
+
+@kernel
+def spanning_forest(nodes: int, edges: Ints, order: Ints) -> Bools:
+    """Kruskal: which edges (E,) a forest takes when they are tried in `order` (E,)."""
+    parent = np.arange(nodes)
+    taken = np.zeros(len(edges), np.bool_)
+    for e in order:
+        a = root_of(parent, edges[e, 0])
+        b = root_of(parent, edges[e, 1])
+        if a != b:
+            parent[a] = b
+            taken[e] = True
+    return taken
+
+
+@kernel
+def components(nodes: int, edges: Ints) -> Ints:
+    """The component (N,) of each node, named by its lowest node."""
+    parent = np.arange(nodes)
+    for e in range(len(edges)):
+        a = root_of(parent, edges[e, 0])
+        b = root_of(parent, edges[e, 1])
+        parent[max(a, b)] = min(a, b)
+    for n in range(nodes):
+        parent[n] = root_of(parent, n)
+    return parent

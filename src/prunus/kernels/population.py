@@ -1,0 +1,381 @@
+"""One step of the population search, for all candidates at once.
+
+A skeleton is a row of N entries: for each node the code of the edge that enters it (edge * 4 +
+label), or ABSENT, or BASE. Beside it stand the grammar state of each node, the node set as 64-bit
+words, the tips not yet given up, the score, and a key: the exclusive or of random numbers, one
+for each (edge, label). Equal sets have equal keys; equal keys are checked entry by entry, so a
+collision never merges two skeletons. Equal skeletons are one row with a number of copies.
+
+A step: `propose` lists every addition that a drawn tip allows, with its weight; `merge_equal`
+makes equal results one candidate; `resample` draws the next population; `advance` writes it.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from prunus.kernels.compiled import kernel
+from prunus.kernels.paths import Words, include
+from prunus.kernels.ranks import average_ranks
+from prunus.model.arrays import Floats, Ints
+
+ABSENT = -1
+"""The entry of a node outside the skeleton."""
+BASE = -2
+"""The entry of the base: no edge enters it."""
+LABELS = 4
+"""An entry is edge * LABELS + label."""
+
+
+class GraphTable(NamedTuple):
+    """The directed edges d, sorted by tail, and what each brings.
+
+    tail, head (D,); out_start (N + 1,); gain (D, L) EdgeScore less GrowPenalty under each label;
+    turn: TurnPenalty of d followed by d' at pair_of[d] + d'; key (D, L) random 64-bit numbers.
+    """
+
+    tail: Ints
+    head: Ints
+    out_start: Ints
+    gain: Floats
+    turn: Floats
+    pair_of: Ints
+    key: Words
+
+
+class PriorTable(NamedTuple):
+    """Path priors by tip: on_path (T, D, W); after, first, second (T, D). See `tip_paths`."""
+
+    on_path: Words
+    after: Floats
+    first: Floats
+    second: Floats
+
+
+class GrammarTable(NamedTuple):
+    """The rules as an automaton over node states.
+
+    following (S, L) the state after one more outgoing edge of that label, -1 = illegal; fresh (L,)
+    the state of a node just reached; incoming (S,) the label that came in; free_turns (L,) how
+    many turns a path may still make for changes of label: 2 - Order(l).
+    """
+
+    following: Ints
+    fresh: Ints
+    incoming: Ints
+    free_turns: Ints
+
+
+class Population(NamedTuple):
+    """U different skeletons: entry, state (U, N), nodes (U, W), live tips (U, WT), key, score, copies."""
+
+    entry: NDArray[np.int32]
+    state: NDArray[np.int16]
+    nodes: Words
+    live: Words
+    key: Words
+    score: Floats
+    copies: Ints
+
+
+class Proposals(NamedTuple):
+    """Additions (Q,): the skeleton that grows, the edge, the label, the weight."""
+
+    parent: Ints
+    edge: Ints
+    label: Ints
+    weight: Floats
+
+
+@kernel
+def is_free(path: Words, nodes: Words) -> bool:
+    """Whether a path shares no node with a skeleton. A path out of reach holds all nodes."""
+    for w in range(len(nodes)):
+        if path[w] & nodes[w]:
+            return False
+    return True
+
+
+@kernel
+def reward(graph: GraphTable, entered_by: int, d: int, label: int) -> float:
+    """Reward of (d, label) after the entry `entered_by` (eq. Reward)."""
+    if entered_by >= 0 and entered_by % LABELS == label:
+        return graph.gain[d, label] - graph.turn[graph.pair_of[entered_by // LABELS] + d]
+    return graph.gain[d, label]
+
+
+@kernel
+def eligible_pairs(
+    graph: GraphTable,
+    priors: PriorTable,
+    grammar: GrammarTable,
+    population: Population,
+    u: int,
+    tip: int,
+    stop_at: int,
+    edges: Ints,
+    labels: Ints,
+    potentials: Floats,
+) -> int:
+    """Eligible(S_u, tip) with the Potential of each pair; how many, at most `stop_at`."""
+    count = 0
+    for n in range(population.entry.shape[1]):
+        entered_by = population.entry[u, n]
+        if entered_by == ABSENT:
+            continue
+        state = population.state[u, n]
+        for d in range(graph.out_start[n], graph.out_start[n + 1]):
+            if not is_free(priors.on_path[tip, d], population.nodes[u]):
+                continue
+            for label in range(grammar.following.shape[1]):
+                if grammar.following[state, label] < 0:
+                    continue
+                value = population.score[u] + reward(graph, entered_by, d, label)
+                value += priors.after[tip, d]
+                if grammar.free_turns[label] > 0:
+                    value += priors.first[tip, d]
+                if grammar.free_turns[label] > 1:
+                    value += priors.second[tip, d]
+                edges[count] = d
+                labels[count] = label
+                potentials[count] = value
+                count += 1
+                if count == stop_at:
+                    return count
+    return count
+
+
+@kernel
+def live_tips(words: Words, tips: Ints) -> int:
+    """Write the tips not given up into `tips`; how many."""
+    count = 0
+    for w in range(len(words)):
+        rest = words[w]
+        tip = 64 * w
+        while rest:
+            if rest & np.uint64(1):
+                tips[count] = tip
+                count += 1
+            rest >>= np.uint64(1)
+            tip += 1
+    return count
+
+
+@kernel
+def exclude(words: Words, tip: int) -> None:
+    """Take the tip out of the set."""
+    words[tip >> 6] &= ~(np.uint64(1) << np.uint64(tip & 63))
+
+
+@kernel
+def propose(
+    graph: GraphTable,
+    priors: PriorTable,
+    grammar: GrammarTable,
+    population: Population,
+    score_rank: Floats,
+    draws: Floats,
+) -> Proposals:
+    """Every skeleton's copies draw a tip each (`draws` (K,) uniform); all additions that allows.
+
+    The weight of an addition is Rank(SkelScore) x Rank(Potential), once for each copy that drew
+    the tip. A skeleton gives up a tip towards which nothing is eligible, and draws another.
+    """
+    D, L = graph.gain.shape
+    T = len(priors.after)
+    edges = np.empty(D * L, np.int64)
+    labels = np.empty(D * L, np.int64)
+    potentials = np.empty(D * L)
+    tips = np.empty(T, np.int64)
+    drawn = np.zeros(T, np.int64)
+    size = 1024
+    out = Proposals(
+        np.empty(size, np.int64), np.empty(size, np.int64), np.empty(size, np.int64), np.empty(size)
+    )
+    Q = 0
+    member = 0
+    for u in range(len(population.score)):
+        drawn[:] = 0
+        for _ in range(population.copies[u]):
+            rest = draws[member]
+            member += 1
+            while True:
+                alive = live_tips(population.live[u], tips)
+                if alive == 0:
+                    break
+                at = min(int(rest * alive), alive - 1)
+                rest = rest * alive - at
+                tip = tips[at]
+                if drawn[tip] > 0 or 0 < eligible_pairs(
+                    graph, priors, grammar, population, u, tip, 1, edges, labels, potentials
+                ):
+                    drawn[tip] += 1
+                    break
+                exclude(population.live[u], tip)
+        for tip in range(T):
+            if drawn[tip] == 0:
+                continue
+            count = eligible_pairs(
+                graph, priors, grammar, population, u, tip, D * L, edges, labels, potentials
+            )
+            if Q + count > size:
+                size = 2 * (Q + count)
+                out = Proposals(
+                    np.append(out.parent[:Q], np.empty(size - Q, np.int64)),
+                    np.append(out.edge[:Q], np.empty(size - Q, np.int64)),
+                    np.append(out.label[:Q], np.empty(size - Q, np.int64)),
+                    np.append(out.weight[:Q], np.empty(size - Q)),
+                )
+            ranks = average_ranks(potentials[:count], np.ones(count, np.int64))
+            for slot in range(count):
+                out.parent[Q] = u
+                out.edge[Q] = edges[slot]
+                out.label[Q] = labels[slot]
+                out.weight[Q] = score_rank[u] * ranks[slot] * drawn[tip]
+                Q += 1
+    return Proposals(out.parent[:Q], out.edge[:Q], out.label[:Q], out.weight[:Q])
+
+
+@kernel
+def are_equal(graph: GraphTable, population: Population, out: Proposals, i: int, j: int) -> bool:
+    """Whether proposals i and j make the same set of (edge, label) pairs.
+
+    From one skeleton they do when the pair is the same. From two different ones they do when each
+    skeleton already holds the pair that the other adds, and they agree everywhere else.
+    """
+    code_i = out.edge[i] * LABELS + out.label[i]
+    code_j = out.edge[j] * LABELS + out.label[j]
+    if out.parent[i] == out.parent[j]:
+        return code_i == code_j
+    row_i = population.entry[out.parent[i]]
+    row_j = population.entry[out.parent[j]]
+    if row_j[graph.head[out.edge[i]]] != code_i or row_i[graph.head[out.edge[j]]] != code_j:
+        return False
+    different = 0
+    for n in range(len(row_i)):
+        different += row_i[n] != row_j[n]
+    return different == 2
+
+
+@kernel
+def merge_equal(
+    graph: GraphTable, population: Population, out: Proposals
+) -> tuple[Ints, Floats, Words]:
+    """Make equal proposals one candidate, by an open hash table over their keys.
+
+    Returns the proposal (C,) that stands for each candidate, the sum (C,) of the weights, and the
+    tips (C, WT) that some parent has not given up.
+    """
+    Q = len(out.parent)
+    slots = 16
+    while slots < 2 * Q:
+        slots *= 2
+    table = np.full(slots, -1, np.int64)
+    key = np.empty(Q, np.uint64)
+    stands = np.empty(Q, np.int64)
+    weight = np.empty(Q)
+    live = np.empty((Q, population.live.shape[1]), np.uint64)
+    C = 0
+    for q in range(Q):
+        parent = out.parent[q]
+        own = population.key[parent] ^ graph.key[out.edge[q], out.label[q]]
+        slot = np.int64(own & np.uint64(slots - 1))
+        while table[slot] >= 0:
+            c = table[slot]
+            if key[c] == own and are_equal(graph, population, out, q, stands[c]):
+                break
+            slot = (slot + 1) & (slots - 1)
+        if table[slot] < 0:
+            table[slot] = C
+            key[C] = own
+            stands[C] = q
+            weight[C] = 0.0
+            live[C] = 0
+            C += 1
+        c = table[slot]
+        weight[c] += out.weight[q]
+        for w in range(live.shape[1]):
+            live[c, w] |= population.live[parent, w]
+    return stands[:C].copy(), weight[:C].copy(), live[:C].copy()
+
+
+@kernel
+def resample(weight: Floats, K: int, most: int, draws: Floats) -> Ints:
+    """How often (C,) each candidate is drawn: K in all, by weight, none more than `most` times.
+
+    Where that leaves too few, all are taken equally often, and the remainder by weight. The sums
+    of the weights left stand in a binary tree, so that a draw (`draws` (K,) uniform) takes log C.
+    """
+    C = len(weight)
+    copies = np.zeros(C, np.int64)
+    if C * most <= K:
+        copies[:] = K // C
+        most = K // C + 1
+        K -= C * (K // C)
+    leaves = 1
+    while leaves < C:
+        leaves *= 2
+    total = np.zeros(2 * leaves)
+    total[leaves : leaves + C] = weight
+    for node in range(leaves - 1, 0, -1):
+        total[node] = total[2 * node] + total[2 * node + 1]
+    for k in range(K):
+        target = draws[k] * total[1]
+        node = 1
+        while node < leaves:
+            node *= 2
+            if target >= total[node] and total[node + 1] > 0.0:
+                target -= total[node]
+                node += 1
+        copies[node - leaves] += 1
+        if copies[node - leaves] == most:
+            total[node] = 0.0
+            while node > 1:
+                node //= 2
+                total[node] = total[2 * node] + total[2 * node + 1]
+    return copies
+
+
+@kernel
+def advance(
+    graph: GraphTable,
+    grammar: GrammarTable,
+    old: Population,
+    out: Proposals,
+    stands: Ints,
+    live: Words,
+    copies: Ints,
+) -> Population:
+    """The population of the candidates that were drawn at least once."""
+    U = 0
+    for c in range(len(copies)):
+        U += copies[c] > 0
+    new = Population(
+        np.empty((U, old.entry.shape[1]), np.int32),
+        np.empty((U, old.entry.shape[1]), np.int16),
+        np.empty((U, old.nodes.shape[1]), np.uint64),
+        np.empty((U, old.live.shape[1]), np.uint64),
+        np.empty(U, np.uint64),
+        np.empty(U),
+        np.empty(U, np.int64),
+    )
+    u = 0
+    for c in range(len(copies)):
+        if copies[c] == 0:
+            continue
+        parent, d, label = out.parent[stands[c]], out.edge[stands[c]], out.label[stands[c]]
+        tail, head = graph.tail[d], graph.head[d]
+        new.entry[u] = old.entry[parent]
+        new.state[u] = old.state[parent]
+        new.nodes[u] = old.nodes[parent]
+        new.live[u] = live[c]
+        new.entry[u, head] = d * LABELS + label
+        new.state[u, tail] = grammar.following[old.state[parent, tail], label]
+        new.state[u, head] = grammar.fresh[label]
+        include(new.nodes[u], head)
+        new.key[u] = old.key[parent] ^ graph.key[d, label]
+        new.score[u] = old.score[parent] + reward(graph, old.entry[parent, tail], d, label)
+        new.copies[u] = copies[c]
+        u += 1
+    return new

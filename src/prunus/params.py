@@ -1,0 +1,195 @@
+"""Every number a user may change: symbol, unit, range, default (the paper's parameter table)."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+
+from prunus.errors import PrunusError
+
+PI = math.pi
+
+
+def _number(default: float, symbol: str, unit: str, about: str, **limits: Any) -> Any:
+    return Field(
+        default, description=about, json_schema_extra={"symbol": symbol, "unit": unit}, **limits
+    )
+
+
+class _Group(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Input(_Group):
+    """What is read of the cloud (method.md 1)."""
+
+    points: int | Literal["all"] = Field(
+        50_000,
+        ge=1,
+        description="points drawn at random from the cloud; 'all' keeps every one",
+        json_schema_extra={"symbol": "P", "unit": "points"},
+    )
+
+    @field_validator("points", mode="before")
+    @classmethod
+    def _none_is_all(cls, value: Any) -> Any:
+        return "all" if value is None or value == "none" else value
+
+
+class Cover(_Group):
+    """Superpoint selection."""
+
+    r_super: float = _number(
+        0.10, "r_super", "m", "radius of the balls that cover the cloud", gt=0, le=10
+    )
+    min_points: int = _number(
+        8, "min_points", "points", "balls with fewer points are noise", ge=1, le=10_000
+    )
+
+
+class Confidence(_Group):
+    """Edge evaluation."""
+
+    alpha_conf: float = _number(
+        0.40, "alpha_conf", "1", "edges under this confidence cost score", ge=0, lt=1
+    )
+
+
+class Tips(_Group):
+    """Tip identification."""
+
+    alpha_tip: float = _number(
+        0.60, "alpha_tip", "1", "share of the height, from the top, that may hold tips", gt=0, le=1
+    )
+
+
+class Turn(_Group):
+    """TurnPenalty (eq. turnpenalty)."""
+
+    theta: float = _number(PI / 4, "theta_TurnMin", "rad", "turns up to this are free", ge=0, le=PI)
+    c: float = _number(0.5, "c_Turn", "1", "factor of the turn penalty", ge=0, le=1000)
+    p: float = _number(2.0, "p_Turn", "1", "power of the turn penalty", gt=0, le=10)
+
+
+class Grow(_Group):
+    """GrowPenalty (eq. growpenalty)."""
+
+    theta: float = _number(
+        PI / 4, "theta_GrowMin", "rad", "deviations up to this are free", ge=0, le=PI / 2
+    )
+    c: float = _number(0.3, "c_Grow", "1", "factor of the growth penalty", ge=0, le=1000)
+    p: float = _number(1.0, "p_Grow", "1", "power of the growth penalty", gt=0, le=10)
+
+
+class Search(_Group):
+    """Population-based search."""
+
+    K: int = _number(500, "K", "skeletons", "size of the population", ge=1, le=1_000_000)
+    k_max_rep: int = _number(
+        3, "k_MaxRep", "skeletons", "copies of one skeleton in the population", ge=1, le=1_000_000
+    )
+
+
+class SideBranches(_Group):
+    """Locating side branches."""
+
+    angle_min: float = _number(
+        PI / 4, "90 - 45 deg", "rad", "least angle with the leader", ge=0, le=PI
+    )
+    angle_max: float = _number(
+        3 * PI / 4, "90 + 45 deg", "rad", "greatest angle with the leader", ge=0, le=PI
+    )
+    turn_max: float = _number(
+        PI / 2, "pi / 2", "rad", "greatest turn between edges of a side branch", ge=0, le=PI
+    )
+
+    @model_validator(mode="after")
+    def _in_order(self) -> SideBranches:
+        if self.angle_min > self.angle_max:
+            raise ValueError(f"angle_min {self.angle_min} is over angle_max {self.angle_max}")
+        return self
+
+
+class Parameters(_Group):
+    """All parameters, one frozen group a stage. The defaults are the paper's values."""
+
+    input: Input = Input()
+    superpoints: Cover = Cover()
+    confidence: Confidence = Confidence()
+    tips: Tips = Tips()
+    turn: Turn = Turn()
+    grow: Grow = Grow()
+    search: Search = Search()
+    side_branches: SideBranches = SideBranches()
+
+    @classmethod
+    def parse(cls, values: Any, source: str = "params") -> Parameters:
+        """Parameters from nested dicts; PrunusError naming `source` and the field otherwise."""
+        try:
+            return cls.model_validate(values)
+        except ValidationError as error:
+            raise PrunusError(f"{source}: {_first_problem(error)}") from error
+
+    @classmethod
+    def from_toml(cls, path: str | Path) -> Parameters:
+        """Parameters from a TOML file; what it does not name keeps its default."""
+        path = Path(path)
+        try:
+            values = tomllib.loads(path.read_text(encoding="utf-8"))
+        except OSError as error:
+            raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise PrunusError(f"{path}: not a TOML file: {error}") from error
+        return cls.parse(values, str(path))
+
+    def changed(self, group: str, **values: Any) -> Parameters:
+        """The same parameters with some values of one group replaced."""
+        nested = self.model_dump()
+        nested[group] |= values
+        return Parameters.parse(nested)
+
+    def to_toml(self) -> str:
+        """The file that `from_toml` reads, each value with symbol, unit, range and meaning."""
+        lines = []
+        for name in type(self).model_fields:
+            group: BaseModel = getattr(self, name)
+            lines += [f"# {(type(group).__doc__ or '').strip()}", f"[{name}]"]
+            for key, field in type(group).model_fields.items():
+                value = getattr(group, key)
+                shown = f'"{value}"' if isinstance(value, str) else repr(value)
+                lines.append(f"{key} = {shown}  # {_about(field)}")
+            lines.append("")
+        return "\n".join(lines)
+
+
+def _about(field: Any) -> str:
+    extra = field.json_schema_extra
+    limits = ", ".join(
+        f"{sign} {getattr(limit, name):.6g}"
+        for limit in field.metadata
+        for name, sign in (("gt", ">"), ("ge", ">="), ("lt", "<"), ("le", "<="))
+        if hasattr(limit, name)
+    )
+    return f"{extra['symbol']} [{extra['unit']}] {limits}: {field.description}"
+
+
+def _first_problem(error: ValidationError) -> str:
+    first = error.errors()[0]
+    where = [str(part) for part in first["loc"] if part not in ("int", "literal['all']")]
+    name = ".".join(where)
+    if first["type"] == "extra_forbidden":
+        return f"{name}: unknown parameter; expected one of {', '.join(_known(where[:-1]))}"
+    message = first["msg"].removeprefix("Value error, ")
+    message = message[0].lower() + message[1:]
+    return f"{name}: {message}; found {first['input']!r}"
+
+
+def _known(groups: list[str]) -> list[str]:
+    known: Any = Parameters
+    for group in groups:
+        known = known.model_fields[group].annotation
+    return sorted(known.model_fields)

@@ -1,0 +1,113 @@
+"""The population of K skeletons and its growth, one labelled edge at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from prunus.kernels.population import (
+    ABSENT,
+    BASE,
+    LABELS,
+    GraphTable,
+    Population,
+    advance,
+    merge_equal,
+    propose,
+    resample,
+)
+from prunus.kernels.ranks import average_ranks
+from prunus.model import Floats, Ints, SeededGraph, Skeleton
+from prunus.params import Parameters
+from prunus.search.eligible import grammar_table
+from prunus.search.potential import path_priors
+from prunus.search.score import graph_table
+
+
+@dataclass(frozen=True, eq=False)
+class SearchResult:
+    """The best skeleton over all iterations, its SkelScore, and the best score (I,) of each."""
+
+    skeleton: Skeleton
+    score: float
+    history: Floats
+
+
+def search(seeded: SeededGraph, params: Parameters, rng: np.random.Generator) -> SearchResult:
+    """Grow K skeletons from the base towards the tips (sec. Population-based search)."""
+    graph, score, cost = graph_table(seeded, params, rng)
+    priors = path_priors(graph, score, cost, seeded.base, seeded.tips)
+    grammar = grammar_table()
+    K, most = params.search.K, params.search.k_max_rep
+    population = _bare(seeded, K)
+    best, best_score = population.entry[0].copy(), 0.0
+    history = []
+    while len(population.score):
+        top = int(population.score.argmax())
+        history.append(population.score[top])
+        if population.score[top] > best_score:
+            best, best_score = population.entry[top].copy(), float(population.score[top])
+        score_rank = average_ranks(population.score, population.copies)
+        proposals = propose(graph, priors, grammar, population, score_rank, rng.random(K))
+        stands, weight, live = merge_equal(graph, population, proposals)
+        copies = resample(weight, K, most, rng.random(K)) if len(weight) else stands
+        population = advance(graph, grammar, population, proposals, stands, live, copies)
+    return SearchResult(_skeleton(best, graph, seeded), best_score, np.array(history))
+
+
+def _bare(seeded: SeededGraph, K: int) -> Population:
+    """K copies of the skeleton that holds the base alone, every tip still to be reached."""
+    N, T = len(seeded.xyz), len(seeded.tips)
+    entry = np.full((1, N), ABSENT, np.int32)
+    entry[0, seeded.base] = BASE
+    return Population(
+        entry,
+        np.zeros((1, N), np.int16),
+        _words(np.array([seeded.base]), N),
+        _words(np.arange(T), T),
+        np.zeros(1, np.uint64),
+        np.zeros(1),
+        np.array([K]),
+    )
+
+
+def _words(members: Ints, size: int) -> np.ndarray[tuple[int, int], np.dtype[np.uint64]]:
+    """A set of integers under `size` as 64-bit words (1, W)."""
+    bits = np.zeros(-(-max(size, 1) // 64) * 64, np.uint8)
+    bits[members] = 1
+    return np.packbits(bits, bitorder="little").view("<u8").astype(np.uint64)[None, :]
+
+
+def _skeleton(
+    entry: np.ndarray[tuple[int], np.dtype[np.int32]], graph: GraphTable, seeded: SeededGraph
+) -> Skeleton:
+    """The skeleton of a row of entries, parents before children."""
+    nodes, parent, label = [seeded.base], [-1], [0]
+    children = np.flatnonzero(entry >= 0)
+    d = entry[children] // LABELS
+    row = 0
+    while row < len(nodes):
+        for child, edge in zip(children, d, strict=True):
+            if graph.tail[edge] == nodes[row]:
+                nodes.append(int(child))
+                parent.append(row)
+                label.append(int(entry[child] % LABELS))
+        row += 1
+    label[0] = label[1] if len(label) > 1 else 0
+    return Skeleton.build(
+        seeded.xyz[nodes],
+        parent,
+        label,
+        confidence=_confidence(nodes, parent, seeded),
+        superpoint=nodes,
+    )
+
+
+def _confidence(nodes: list[int], parent: list[int], seeded: SeededGraph) -> Floats:
+    of_pair = {
+        (int(i), int(j)): c for (i, j), c in zip(seeded.edges, seeded.confidence, strict=True)
+    }
+    ends = [(nodes[p], nodes[row]) for row, p in enumerate(parent)]
+    known = [of_pair[min(pair), max(pair)] for pair in ends[1:]]
+    return np.array([np.nan, *known])

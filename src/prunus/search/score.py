@@ -1,0 +1,84 @@
+"""The objective: SkelScore and its parts (sec. Skeleton evaluation objective function)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from prunus.grammar import GROWTH_TARGET, SEARCHED
+from prunus.kernels.angles import grow_angle, turn_penalties
+from prunus.kernels.population import GraphTable
+from prunus.model import Floats, Label, SeededGraph, Skeleton
+from prunus.params import Grow, Parameters, Turn
+
+EXACT = 2.0**32
+"""Rewards are rounded to 1 / EXACT, so that a sum does not depend on the order of its terms."""
+
+
+def edge_score(length: Floats, confidence: Floats, alpha_conf: float) -> Floats:
+    """EdgeScore (E,) = Len (1 - (1 - Conf) / (1 - alpha_conf)) (eq. edgescore)."""
+    return np.asarray(length * (1 - (1 - confidence) / (1 - alpha_conf)))
+
+
+def grow_penalty(vectors: Floats, label: Label, params: Grow) -> Floats:
+    """GrowPenalty (E,) of edges (E, 3) under one label (eqs. growpenalty, DeltaTarget)."""
+    if label not in GROWTH_TARGET:
+        return np.zeros(len(vectors))
+    off = np.abs(GROWTH_TARGET[label] - grow_angle(vectors))
+    return np.asarray(params.c * np.maximum(off - params.theta, 0) ** params.p)
+
+
+def turn_penalty(before: Floats, after: Floats, params: Turn) -> Floats:
+    """TurnPenalty (E,) of edges (E, 3) after their predecessors of the same label (eq. turnpenalty)."""
+    sizes = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
+    angle = np.arccos(np.clip((before * after).sum(axis=1) / sizes, -1, 1))
+    return np.asarray(params.c * np.maximum(angle - params.theta, 0) ** params.p)
+
+
+def skel_score(skeleton: Skeleton, params: Parameters) -> float:
+    """SkelScore: the sum of the rewards of trunk, support and leader edges (eq. skelscore)."""
+    rows = np.flatnonzero(np.isin(skeleton.label, SEARCHED) & (skeleton.parent >= 0))
+    vectors = skeleton.edge_vectors
+    total = edge_score(
+        skeleton.lengths[rows], skeleton.confidence[rows], params.confidence.alpha_conf
+    ).sum()
+    for label in SEARCHED:
+        grown = rows[skeleton.label[rows] == label]
+        total -= grow_penalty(vectors[grown], label, params.grow).sum()
+    parent = skeleton.parent[rows]
+    same = rows[(parent > 0) & (skeleton.label[parent] == skeleton.label[rows])]
+    total -= turn_penalty(vectors[skeleton.parent[same]], vectors[same], params.turn).sum()
+    return float(total)
+
+
+def graph_table(
+    seeded: SeededGraph, params: Parameters, rng: np.random.Generator
+) -> tuple[GraphTable, Floats, Floats]:
+    """The directed edges with their rewards; EdgeScore (D,) and Len (1 - Conf) (D,) beside it."""
+    xyz, confidence = seeded.xyz, np.tile(seeded.confidence, 2)
+    tail, head = np.concatenate([seeded.edges, seeded.edges[:, ::-1]]).T
+    order = np.lexsort([head, tail])
+    tail, head, confidence = tail[order], head[order], confidence[order]
+    out_start = np.searchsorted(tail, np.arange(len(xyz) + 1))
+    vector = xyz[head] - xyz[tail]
+    length = np.linalg.norm(vector, axis=1)
+    score = exact(edge_score(length, confidence, params.confidence.alpha_conf))
+    penalty = [grow_penalty(vector, label, params.grow) for label in SEARCHED]
+    pair_start = np.concatenate([[0], np.cumsum(np.diff(out_start)[head])])
+    turn = turn_penalties(
+        vector, head, out_start, pair_start, params.turn.theta, params.turn.c, params.turn.p
+    )
+    table = GraphTable(
+        tail,
+        head,
+        out_start,
+        exact(score[:, None] - np.stack(penalty, axis=1)),
+        turn,
+        pair_start[:-1] - out_start[head],
+        rng.integers(0, 2**64, (len(tail), len(SEARCHED)), np.uint64),
+    )
+    return table, score, length * (1 - confidence)
+
+
+def exact(values: Floats) -> Floats:
+    """Values rounded to 1 / EXACT."""
+    return np.asarray(np.rint(values * EXACT) / EXACT)
