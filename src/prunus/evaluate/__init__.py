@@ -1,0 +1,1 @@
+"""How good a skeleton is, against the truth."""
