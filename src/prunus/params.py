@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import tomllib
 from pathlib import Path
@@ -92,6 +93,11 @@ class Search(_Group):
     k_max_rep: int = _number(
         3, "k_MaxRep", "skeletons", "copies of one skeleton in the population", ge=1, le=1_000_000
     )
+    refine: bool = Field(
+        True,
+        description="improve the best skeleton one edge at a time (beyond the paper)",
+        json_schema_extra={"symbol": "-", "unit": "-"},
+    )
 
 
 class SideBranches(_Group):
@@ -160,7 +166,7 @@ class Parameters(_Group):
             lines += [f"# {(type(group).__doc__ or '').strip()}", f"[{name}]"]
             for key, field in type(group).model_fields.items():
                 value = getattr(group, key)
-                shown = f'"{value}"' if isinstance(value, str) else repr(value)
+                shown = json.dumps(value)
                 lines.append(f"{key} = {shown}  # {_about(field)}")
             lines.append("")
         return "\n".join(lines)

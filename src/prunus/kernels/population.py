@@ -10,7 +10,7 @@ A step: `propose` lists every addition that a drawn tip allows, with its weight;
 makes equal results one candidate; `resample` draws the next population; `advance` writes it.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,9 @@ from numpy.typing import NDArray
 from prunus.kernels.compiled import kernel
 from prunus.kernels.paths import Words, include
 from prunus.kernels.ranks import average_ranks
-from prunus.model.arrays import Floats, Ints
+from prunus.model.arrays import Bools, Floats, Ints
+
+Column = TypeVar("Column", Ints, Floats)
 
 ABSENT = -1
 """The entry of a node outside the skeleton."""
@@ -57,13 +59,13 @@ class GrammarTable(NamedTuple):
     """The rules as an automaton over node states.
 
     following (S, L) the state after one more outgoing edge of that label, -1 = illegal; fresh (L,)
-    the state of a node just reached; incoming (S,) the label that came in; free_turns (L,) how
-    many turns a path may still make for changes of label: 2 - Order(l).
+    the state of a node just reached; is_open (S,) whether anything may still leave; free_turns
+    (L,) how many turns a path may still make for changes of label: 2 - Order(l).
     """
 
     following: Ints
     fresh: Ints
-    incoming: Ints
+    is_open: Bools
     free_turns: Ints
 
 
@@ -89,10 +91,13 @@ class Proposals(NamedTuple):
 
 
 @kernel
-def is_free(path: Words, nodes: Words) -> bool:
-    """Whether a path shares no node with a skeleton. A path out of reach holds all nodes."""
-    for w in range(len(nodes)):
-        if path[w] & nodes[w]:
+def is_free(on_path: Words, tip: int, d: int, nodes: Words, u: int) -> bool:
+    """Whether the path from d to the tip shares no node with skeleton u.
+
+    A path out of reach holds all nodes, and is never free.
+    """
+    for w in range(nodes.shape[1]):
+        if on_path[tip, d, w] & nodes[u, w]:
             return False
     return True
 
@@ -113,36 +118,36 @@ def eligible_pairs(
     population: Population,
     u: int,
     tip: int,
-    stop_at: int,
     edges: Ints,
     labels: Ints,
     potentials: Floats,
 ) -> int:
-    """Eligible(S_u, tip) with the Potential of each pair; how many, at most `stop_at`."""
+    """Write Eligible(S_u, tip) and the Potential of each pair; how many."""
+    entry, states, nodes = population.entry, population.state, population.nodes
+    head, out_start = graph.head, graph.out_start
+    following, is_open, free_turns = grammar.following, grammar.is_open, grammar.free_turns
+    on_path, after = priors.on_path, priors.after
     count = 0
-    for n in range(population.entry.shape[1]):
-        entered_by = population.entry[u, n]
-        if entered_by == ABSENT:
+    for n in range(entry.shape[1]):
+        state = states[u, n]
+        if entry[u, n] == ABSENT or not is_open[state]:
             continue
-        state = population.state[u, n]
-        for d in range(graph.out_start[n], graph.out_start[n + 1]):
-            if not is_free(priors.on_path[tip, d], population.nodes[u]):
+        for d in range(out_start[n], out_start[n + 1]):
+            if entry[u, head[d]] != ABSENT or not is_free(on_path, tip, d, nodes, u):
                 continue
-            for label in range(grammar.following.shape[1]):
-                if grammar.following[state, label] < 0:
+            for label in range(following.shape[1]):
+                if following[state, label] < 0:
                     continue
-                value = population.score[u] + reward(graph, entered_by, d, label)
-                value += priors.after[tip, d]
-                if grammar.free_turns[label] > 0:
+                value = population.score[u] + reward(graph, entry[u, n], d, label)
+                value += after[tip, d]
+                if free_turns[label] > 0:
                     value += priors.first[tip, d]
-                if grammar.free_turns[label] > 1:
+                if free_turns[label] > 1:
                     value += priors.second[tip, d]
                 edges[count] = d
                 labels[count] = label
                 potentials[count] = value
                 count += 1
-                if count == stop_at:
-                    return count
     return count
 
 
@@ -169,6 +174,14 @@ def exclude(words: Words, tip: int) -> None:
 
 
 @kernel
+def longer(column: Column, size: int) -> Column:
+    """The column in an array of that size."""
+    grown = np.empty(size, column.dtype)
+    grown[: len(column)] = column
+    return grown
+
+
+@kernel
 def propose(
     graph: GraphTable,
     priors: PriorTable,
@@ -180,61 +193,52 @@ def propose(
     """Every skeleton's copies draw a tip each (`draws` (K,) uniform); all additions that allows.
 
     The weight of an addition is Rank(SkelScore) x Rank(Potential), once for each copy that drew
-    the tip. A skeleton gives up a tip towards which nothing is eligible, and draws another.
+    the tip. A tip towards which nothing is eligible is given up, and another is drawn with what is
+    left of the number. What a tip allows is worked out once, into columns that hold room for the
+    longest possible list.
     """
-    D, L = graph.gain.shape
+    room = graph.gain.size
     T = len(priors.after)
-    edges = np.empty(D * L, np.int64)
-    labels = np.empty(D * L, np.int64)
-    potentials = np.empty(D * L)
     tips = np.empty(T, np.int64)
-    drawn = np.zeros(T, np.int64)
-    size = 1024
-    out = Proposals(
-        np.empty(size, np.int64), np.empty(size, np.int64), np.empty(size, np.int64), np.empty(size)
-    )
-    Q = 0
-    member = 0
+    ones = np.ones(room, np.int64)
+    size = 4 * room
+    parent, edge = np.empty(size, np.int64), np.empty(size, np.int64)
+    label, weight, ranks = np.empty(size, np.int64), np.empty(size), np.empty(room)
+    first, drawn, count = np.empty(T, np.int64), np.empty(T, np.int64), np.empty(T, np.int64)
+    Q, member = 0, 0
     for u in range(len(population.score)):
         drawn[:] = 0
+        alive = live_tips(population.live[u], tips)
         for _ in range(population.copies[u]):
             rest = draws[member]
             member += 1
-            while True:
-                alive = live_tips(population.live[u], tips)
-                if alive == 0:
-                    break
+            while alive > 0:
                 at = min(int(rest * alive), alive - 1)
                 rest = rest * alive - at
                 tip = tips[at]
-                if drawn[tip] > 0 or 0 < eligible_pairs(
-                    graph, priors, grammar, population, u, tip, 1, edges, labels, potentials
-                ):
+                if drawn[tip] == 0:
+                    if Q + room > size:
+                        size *= 2
+                        parent, edge = longer(parent, size), longer(edge, size)
+                        label, weight = longer(label, size), longer(weight, size)
+                    count[tip] = eligible_pairs(
+                        graph, priors, grammar, population, u, tip, edge[Q:], label[Q:], weight[Q:]
+                    )
+                    first[tip] = Q
+                    Q += count[tip]
+                if count[tip] > 0:
                     drawn[tip] += 1
                     break
                 exclude(population.live[u], tip)
+                alive = live_tips(population.live[u], tips)
         for tip in range(T):
-            if drawn[tip] == 0:
-                continue
-            count = eligible_pairs(
-                graph, priors, grammar, population, u, tip, D * L, edges, labels, potentials
-            )
-            if Q + count > size:
-                size = 2 * (Q + count)
-                out = Proposals(
-                    np.append(out.parent[:Q], np.empty(size - Q, np.int64)),
-                    np.append(out.edge[:Q], np.empty(size - Q, np.int64)),
-                    np.append(out.label[:Q], np.empty(size - Q, np.int64)),
-                    np.append(out.weight[:Q], np.empty(size - Q)),
-                )
-            ranks = average_ranks(potentials[:count], np.ones(count, np.int64))
-            for slot in range(count):
-                out.parent[Q] = u
-                out.edge[Q] = edges[slot]
-                out.label[Q] = labels[slot]
-                out.weight[Q] = score_rank[u] * ranks[slot] * drawn[tip]
-                Q += 1
-    return Proposals(out.parent[:Q], out.edge[:Q], out.label[:Q], out.weight[:Q])
+            if drawn[tip] > 0:
+                a, b = first[tip], first[tip] + count[tip]
+                average_ranks(weight[a:b], ones[: b - a], ranks)
+                parent[a:b] = u
+                for q in range(a, b):
+                    weight[q] = score_rank[u] * ranks[q - a] * drawn[tip]
+    return Proposals(parent[:Q], edge[:Q], label[:Q], weight[:Q])
 
 
 @kernel

@@ -6,20 +6,29 @@ from prunus.kernels.compiled import kernel
 from prunus.model.arrays import Floats, Ints
 
 
+FEW = 32
+"""Up to this many values, counting the smaller ones is faster than sorting (1.0 -> 0.2 us at 8)."""
+
+
 @kernel
-def average_ranks(values: Floats, copies: Ints) -> Floats:
-    """Rank (X,) of each value in (0, 1], where value x stands `copies[x]` times in the list.
+def average_ranks(values: Floats, copies: Ints, ranks: Floats) -> None:
+    """Write the Rank of each value (X,) in (0, 1] into `ranks`; value x stands `copies[x]` times.
 
     {4, 5, 5, 3, 7} gives {2/5, 7/10, 7/10, 1/5, 1}.
     """
-    order = np.argsort(values)
-    ranks = np.empty(len(values))
     total = copies.sum()
-    below = 0
-    first = 0
+    if len(values) <= FEW:
+        for x in range(len(values)):
+            below, tied = 0, 0
+            for other in range(len(values)):
+                below += copies[other] * (values[other] < values[x])
+                tied += copies[other] * (values[other] == values[x])
+            ranks[x] = (below + (tied + 1) / 2.0) / total
+        return
+    order = np.argsort(values)
+    below, first = 0, 0
     while first < len(order):
-        last = first
-        tied = 0
+        last, tied = first, 0
         while last < len(order) and values[order[last]] == values[order[first]]:
             tied += copies[order[last]]
             last += 1
@@ -27,4 +36,3 @@ def average_ranks(values: Floats, copies: Ints) -> Floats:
             ranks[order[slot]] = (below + (tied + 1) / 2.0) / total
         below += tied
         first = last
-    return ranks

@@ -22,6 +22,7 @@ from prunus.model import Floats, Ints, SeededGraph, Skeleton
 from prunus.params import Parameters
 from prunus.search.eligible import grammar_table
 from prunus.search.potential import path_priors
+from prunus.search.refine import refine
 from prunus.search.score import graph_table
 
 
@@ -48,11 +49,14 @@ def search(seeded: SeededGraph, params: Parameters, rng: np.random.Generator) ->
         history.append(population.score[top])
         if population.score[top] > best_score:
             best, best_score = population.entry[top].copy(), float(population.score[top])
-        score_rank = average_ranks(population.score, population.copies)
+        score_rank = np.empty(len(population.score))
+        average_ranks(population.score, population.copies, score_rank)
         proposals = propose(graph, priors, grammar, population, score_rank, rng.random(K))
         stands, weight, live = merge_equal(graph, population, proposals)
         copies = resample(weight, K, most, rng.random(K)) if len(weight) else stands
         population = advance(graph, grammar, population, proposals, stands, live, copies)
+    if params.search.refine:
+        best, best_score = refine(best, graph, grammar, cost, seeded.tips)
     return SearchResult(_skeleton(best, graph, seeded), best_score, np.array(history))
 
 
@@ -83,17 +87,15 @@ def _skeleton(
     entry: np.ndarray[tuple[int], np.dtype[np.int32]], graph: GraphTable, seeded: SeededGraph
 ) -> Skeleton:
     """The skeleton of a row of entries, parents before children."""
+    below: dict[int, list[int]] = {}
+    for child in np.flatnonzero(entry >= 0).tolist():
+        below.setdefault(int(graph.tail[entry[child] // LABELS]), []).append(child)
     nodes, parent, label = [seeded.base], [-1], [0]
-    children = np.flatnonzero(entry >= 0)
-    d = entry[children] // LABELS
-    row = 0
-    while row < len(nodes):
-        for child, edge in zip(children, d, strict=True):
-            if graph.tail[edge] == nodes[row]:
-                nodes.append(int(child))
-                parent.append(row)
-                label.append(int(entry[child] % LABELS))
-        row += 1
+    for row, node in enumerate(nodes):
+        for child in below.get(node, []):
+            nodes.append(child)
+            parent.append(row)
+            label.append(int(entry[child] % LABELS))
     label[0] = label[1] if len(label) > 1 else 0
     return Skeleton.build(
         seeded.xyz[nodes],

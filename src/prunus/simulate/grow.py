@@ -148,7 +148,9 @@ def _grow_side_branch(tree: _Growing, row: int, leader: Floats) -> None:
 def _upright(sideways: Floats, depth: float) -> Floats:
     """Headings (S, 3) that lean sideways (S,) along X and by one angle along Y, radians."""
     return _unit(
-        np.column_stack([np.tan(sideways), np.full(len(sideways), math.tan(depth)), np.ones(len(sideways))])
+        np.column_stack(
+            [np.tan(sideways), np.full(len(sideways), math.tan(depth)), np.ones(len(sideways))]
+        )
     )
 
 

@@ -1,0 +1,70 @@
+"""Beyond the paper: the best skeleton found, improved one edge at a time (see kernels/refine.py)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from prunus.kernels.population import ABSENT, BASE, LABELS, GrammarTable, GraphTable
+from prunus.kernels.refine import NEVER, OUTSIDE, ROOT, climb, complete
+from prunus.model import Floats, Ints
+
+SWEEPS = 50
+"""More than any tree has needed; a bound, not a setting."""
+
+
+def refine(
+    entry: Ints, graph: GraphTable, grammar: GrammarTable, cost: Floats, tips: Ints
+) -> tuple[Ints, float]:
+    """A skeleton's row of entries (N,), at least as good as the one given, and its SkelScore."""
+    into = np.where(entry >= 0, entry // LABELS, OUTSIDE)
+    into[entry == BASE] = ROOT
+    may_end = entry != ABSENT
+    may_end[tips] = True
+    order = complete(into, graph, cost)
+    worth = climb(into, order, may_end, graph, grammar, SWEEPS)
+    chosen = np.full_like(entry, ABSENT)
+    base = int(order[0])
+    chosen[base] = BASE
+    waiting = [(base, -1)]
+    while waiting:
+        node, label = waiting.pop()
+        for d, below in _best_children(
+            node, label, into, worth, bool(may_end[node]), graph, grammar
+        ):
+            child = int(graph.head[d])
+            chosen[child] = d * LABELS + below
+            waiting.append((child, below))
+    return chosen, float(worth[base, 0])
+
+
+def _best_children(
+    node: int,
+    label: int,
+    into: Ints,
+    worth: Floats,
+    may_end: bool,
+    graph: GraphTable,
+    grammar: GrammarTable,
+) -> list[tuple[int, int]]:
+    """The (edge, label) pairs that make up the worth of a node; label -1 at the base."""
+    start = 0 if label < 0 else int(grammar.fresh[label])
+    best: dict[int, tuple[float, list[tuple[int, int]]]] = {start: (0.0, [])}
+    for d in range(graph.out_start[node], graph.out_start[node + 1]):
+        child = graph.head[d]
+        if into[child] != d:
+            continue
+        after = dict(best)
+        for below in range(grammar.following.shape[1]):
+            brings = graph.gain[d, below] + worth[child, below]
+            if below == label:
+                brings -= graph.turn[graph.pair_of[into[node]] + d]
+            if brings <= NEVER / 2:
+                continue
+            for state, (total, pairs) in best.items():
+                to = int(grammar.following[state, below])
+                if to >= 0 and (to not in after or total + brings > after[to][0]):
+                    after[to] = (total + brings, [*pairs, (d, below)])
+        best = after
+    if not may_end:
+        best.pop(start)
+    return max(best.values(), key=lambda found: found[0])[1]
