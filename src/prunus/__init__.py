@@ -1,3 +1,56 @@
-"""From a 3D point cloud of a dormant fruit tree to a labelled skeleton."""
+"""From a 3D point cloud of a dormant fruit tree to a labelled skeleton.
+
+    import prunus
+    result = prunus.skeletonize(prunus.read_cloud("tree.ply"), base=(1.40, 0.90, 1.42))
+    result.skeleton.to_networkx()
+
+Names are loaded when they are first used, so that `import prunus` is quick.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from prunus.errors import PrunusError as PrunusError
+    from prunus.graphs import GraphSkeleton as GraphSkeleton
+    from prunus.graphs import search_graph as search_graph
+    from prunus.intake import read_cloud as read_cloud
+    from prunus.io.skeletons import read_skeleton as read_skeleton
+    from prunus.io.skeletons import write_skeleton as write_skeleton
+    from prunus.model import Label as Label
+    from prunus.model import PointCloud as PointCloud
+    from prunus.model import Skeleton as Skeleton
+    from prunus.params import Parameters as Parameters
+    from prunus.pipeline import Result as Result
+    from prunus.pipeline import skeletonize as skeletonize
+    from prunus.stages.confidence import EdgeScorer as EdgeScorer
 
 __version__ = "0.1.0"
+
+_HOME = {
+    "EdgeScorer": "prunus.stages.confidence",
+    "GraphSkeleton": "prunus.graphs",
+    "Label": "prunus.model",
+    "Parameters": "prunus.params",
+    "PointCloud": "prunus.model",
+    "PrunusError": "prunus.errors",
+    "Result": "prunus.pipeline",
+    "Skeleton": "prunus.model",
+    "read_cloud": "prunus.intake",
+    "read_skeleton": "prunus.io.skeletons",
+    "search_graph": "prunus.graphs",
+    "skeletonize": "prunus.pipeline",
+    "write_skeleton": "prunus.io.skeletons",
+}
+
+__all__ = [*sorted(_HOME)]  # noqa: PLE0604, the names are strings
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'prunus' has no attribute {name!r}")
+    return getattr(import_module(_HOME[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_HOME])

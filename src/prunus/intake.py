@@ -1,0 +1,42 @@
+"""From a file to a cloud in the house frame: unit, frame, local origin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from prunus.errors import PrunusError
+from prunus.io.clouds import FileCloud
+from prunus.io.clouds import read_cloud as read_file
+from prunus.model import FRAMES, PointCloud
+from prunus.sensing.orient import find_frame
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """A cloud in the house frame, the file it came from, and notes on how it was read."""
+
+    cloud: PointCloud
+    file: FileCloud
+    frame: str
+    notes: list[str]
+
+
+def open_scan(path: str | Path, frame: str = "auto", unit: str | None = None) -> Scan:
+    """Read a file. frame: z-up, optical, or auto = by the evidence in the cloud; unit: m, cm, mm.
+
+    Raises PrunusError naming the file, what was found and what was expected.
+    """
+    if frame not in (*FRAMES, "auto"):
+        raise PrunusError(f"unknown frame {frame!r}; expected auto, {', '.join(FRAMES)}")
+    file = read_file(path, unit)
+    notes = list(file.notes)
+    if frame == "auto":
+        frame, why = find_frame(file.xyz)
+        notes.append(f"frame {frame}: {why}")
+    return Scan(PointCloud.from_xyz(file.xyz, frame, file.rgb), file, frame, notes)
+
+
+def read_cloud(path: str | Path, frame: str = "auto", unit: str | None = None) -> PointCloud:
+    """Read a cloud into the house frame (see `open_scan`)."""
+    return open_scan(path, frame, unit).cloud

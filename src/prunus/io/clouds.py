@@ -1,0 +1,147 @@
+"""Point clouds from files: PLY, PCD, XYZ / TXT / CSV, LAS / LAZ, NPY, NPZ."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from prunus.errors import PrunusError
+from prunus.io.ply import ply_bytes, table_of
+from prunus.io.readers import READERS
+from prunus.io.safely import read_bytes, write_bytes
+from prunus.model import Floats
+from prunus.model.arrays import Bytes
+
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+"""Metres in one unit."""
+
+PLAUSIBLE = 50.0
+"""A scan wider than so many metres is not in metres, unless `unit` says so."""
+PLAUSIBLE_CM = 600.0
+"""A scan wider than so many units is not in centimetres either."""
+
+
+@dataclass(frozen=True, eq=False)
+class FileCloud:
+    """What a file holds: xyz (P, 3) in metres in its own frame, rgb (P, 3) or None, its sha256."""
+
+    path: Path
+    xyz: Floats
+    rgb: Bytes | None
+    sha256: str
+    notes: list[str]
+
+
+def read_cloud(path: str | Path, unit: str | None = None) -> FileCloud:
+    """Read a cloud; `unit` (m, cm, mm) is that of the file, None = metres and checked.
+
+    Raises PrunusError naming the file, what was found and what was expected.
+    """
+    path = Path(path)
+    if unit is not None and unit not in UNITS:
+        raise PrunusError(f"unknown unit {unit!r}; expected one of {sorted(UNITS)}")
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        raise PrunusError(
+            f"{path}: unknown kind of file {path.suffix!r}; expected one of {' '.join(READERS)}"
+        )
+    content = read_bytes(path)
+    xyz, rgb = reader(content, path)
+    xyz, rgb, notes = _finite(xyz, rgb, path)
+    if unit is None:
+        _check_metres(xyz, path)
+    xyz = xyz * UNITS[unit or "m"] if unit not in (None, "m") else xyz
+    return FileCloud(path, xyz, rgb, hashlib.sha256(content).hexdigest(), notes)
+
+
+def write_cloud(path: str | Path, xyz: Floats, rgb: Bytes | None = None) -> None:
+    """Write a cloud as PLY, XYZ / TXT / CSV, NPY or NPZ by the ending; metres, double precision."""
+    path = Path(path)
+    writer = WRITERS.get(path.suffix.lower())
+    if writer is None:
+        raise PrunusError(
+            f"{path}: clouds are not written as {path.suffix!r}; "
+            f"expected one of {' '.join(WRITERS)}"
+        )
+    write_bytes(path, writer(xyz, rgb))
+
+
+def _finite(xyz: Floats, rgb: Bytes | None, path: Path) -> tuple[Floats, Bytes | None, list[str]]:
+    if len(xyz) == 0:
+        raise PrunusError(f"{path}: holds no points; expected at least one")
+    if np.isfinite(xyz.sum()):
+        return xyz, rgb, []
+    finite = np.isfinite(xyz)
+    nothing = np.isnan(xyz).all(axis=1)
+    if path.suffix.lower() == ".pcd" and nothing.any():
+        kept = ~nothing
+        notes = [f"{nothing.sum()} of {len(xyz)} pixels saw nothing (NaN) and were left out"]
+        rest, colours, _ = _finite(xyz[kept], None if rgb is None else rgb[kept], path)
+        return rest, colours, notes
+    bad = ~finite.all(axis=1)
+    if not bad.any():
+        return xyz, rgb, []
+    raise PrunusError(
+        f"{path}: {bad.sum()} of {len(xyz)} points hold NaN or infinity (the first is point "
+        f"{int(bad.argmax()) + 1}); expected finite coordinates"
+    )
+
+
+def _check_metres(xyz: Floats, path: Path) -> None:
+    step = max(1, len(xyz) // 20_000)
+    low, high = np.quantile(xyz[::step], [0.02, 0.98], axis=0)
+    wide = float((high - low).max())
+    if wide <= PLAUSIBLE:
+        return
+    unit, name = ("cm", "centimetres") if wide <= PLAUSIBLE_CM else ("mm", "millimetres")
+    raise PrunusError(
+        f"{path}: the scan is {wide:.0f} units wide, expected a tree in metres; it looks like "
+        f"{name}: say --unit {unit} (or --unit m if it is in metres all the same)"
+    )
+
+
+def _ply(xyz: Floats, rgb: Bytes | None) -> bytes:
+    columns: dict[str, Any] = {name: xyz[:, axis] for axis, name in enumerate("xyz")}
+    if rgb is not None:
+        columns |= {name: rgb[:, c] for c, name in enumerate(("red", "green", "blue"))}
+    return ply_bytes({"vertex": table_of(columns)}, ["written by prunus; unit: metre"])
+
+
+def _text(delimiter: str) -> Callable[[Floats, Bytes | None], bytes]:
+    def write(xyz: Floats, rgb: Bytes | None) -> bytes:
+        rows = xyz if rgb is None else np.column_stack([xyz, rgb])
+        header = delimiter.join(["x", "y", "z", "r", "g", "b"][: rows.shape[1]])
+        out = io.BytesIO()
+        np.savetxt(out, rows, "%.12g" if rgb is None else ["%.12g"] * 3 + ["%d"] * 3, delimiter)
+        return header.encode() * (delimiter == ",") + b"\n" * (delimiter == ",") + out.getvalue()
+
+    return write
+
+
+def _npy(xyz: Floats, _: Bytes | None) -> bytes:
+    out = io.BytesIO()
+    np.save(out, xyz)
+    return out.getvalue()
+
+
+def _npz(xyz: Floats, rgb: Bytes | None) -> bytes:
+    out = io.BytesIO()
+    np.savez_compressed(out, xyz=xyz, **({} if rgb is None else {"rgb": rgb}))
+    return out.getvalue()
+
+
+WRITERS: dict[str, Callable[[Floats, Bytes | None], bytes]] = {
+    ".ply": _ply,
+    ".xyz": _text(" "),
+    ".txt": _text(" "),
+    ".csv": _text(","),
+    ".npy": _npy,
+    ".npz": _npz,
+}
+"""How each kind of file is written, by its ending."""

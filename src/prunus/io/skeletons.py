@@ -1,0 +1,123 @@
+"""`skeleton.json`: the one module that reads and writes it. Its JSON Schema is docs/skeleton.schema.json."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from prunus.errors import PrunusError
+from prunus.io.safely import read_bytes, write_bytes
+from prunus.model import Floats, Label, Skeleton
+
+Word = Literal["trunk", "support", "leader", "side_branch"]
+Point = tuple[float, float, float]
+
+
+class InputRecord(BaseModel):
+    """The cloud that a skeleton came from."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    file: str
+    sha256: str
+    points: int
+
+
+class SkeletonFile(BaseModel):
+    """The contents of `skeleton.json`. One entry a node; the edge of a node is that from its parent."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", title="prunus skeleton")
+
+    format: Literal["prunus-skeleton"] = "prunus-skeleton"
+    version: Literal[1] = 1
+    frame: Literal["file"] = Field("file", description="nodes are in the frame of the input file")
+    unit: Literal["m"] = "m"
+    nodes: list[Point] = Field(min_length=1, description="x, y, z; the base first")
+    parent: list[int] = Field(description="an earlier node; -1 for the base")
+    label: list[Word] = Field(description="of the edge from the parent; the base repeats the first")
+    confidence: list[float | None] = Field(description="of the edge; null = unknown")
+    radius: list[float | None] = Field(description="null = unknown")
+    superpoint: list[int] = Field(description="index of the superpoint; -1 = none")
+    score: float | None = Field(None, description="SkelScore, without side branches")
+    input: InputRecord | None = None
+    params: dict[str, Any] | None = None
+    seed: int | None = None
+    version_of_prunus: str | None = None
+
+
+def write_skeleton(path: str | Path, skeleton: Skeleton, **evidence: Any) -> None:
+    """Write `skeleton.json`; `evidence`: score, input, params, seed, version_of_prunus."""
+    record = SkeletonFile(
+        nodes=skeleton.xyz.tolist(),
+        parent=skeleton.parent.tolist(),
+        label=[Label(label).word for label in skeleton.label],
+        confidence=_nullable(skeleton.confidence),
+        radius=_nullable(skeleton.radius),
+        superpoint=skeleton.superpoint.tolist(),
+        **evidence,
+    )
+    rows = record.model_dump()
+    lines = [f"  {json.dumps(key)}: {_compact(value)}" for key, value in rows.items()]
+    write_bytes(Path(path), ("{\n" + ",\n".join(lines) + "\n}\n").encode())
+
+
+def read_record(path: str | Path) -> tuple[Skeleton, SkeletonFile]:
+    """The skeleton, and all that its file says; PrunusError naming file and field otherwise."""
+    path = Path(path)
+    try:
+        record = SkeletonFile.model_validate_json(read_bytes(path))
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"]) or "the file"
+        raise PrunusError(f"{path}: {where}: {first['msg']}") from error
+    columns = ("parent", "label", "confidence", "radius", "superpoint")
+    for name in columns:
+        found = len(getattr(record, name))
+        if found != len(record.nodes):
+            raise PrunusError(
+                f"{path}: {name}: {found} entries; expected one for each of the "
+                f"{len(record.nodes)} nodes"
+            )
+    try:
+        skeleton = Skeleton.build(
+            record.nodes,
+            record.parent,
+            [Label.from_word(word) for word in record.label],
+            confidence=_known(record.confidence),
+            radius=_known(record.radius),
+            superpoint=record.superpoint,
+        )
+    except ValueError as error:
+        raise PrunusError(f"{path}: {error}") from error
+    return skeleton, record
+
+
+def read_skeleton(path: str | Path) -> Skeleton:
+    """The skeleton of a `skeleton.json`, or of an SWC file, by the ending."""
+    from prunus.io.export import read_swc
+
+    return read_swc(path) if Path(path).suffix.lower() == ".swc" else read_record(path)[0]
+
+
+def schema() -> str:
+    """The JSON Schema of `skeleton.json`, as committed in docs/."""
+    return json.dumps(SkeletonFile.model_json_schema(), indent=2) + "\n"
+
+
+def _nullable(values: Floats) -> list[float | None]:
+    return [None if np.isnan(value) else value for value in values.tolist()]
+
+
+def _known(values: list[float | None]) -> list[float]:
+    return [np.nan if value is None else value for value in values]
+
+
+def _compact(value: Any) -> str:
+    """JSON on one line, save that long lists of nodes get a line each."""
+    if isinstance(value, list) and value and isinstance(value[0], tuple):
+        return "[\n    " + ",\n    ".join(json.dumps(row) for row in value) + "\n  ]"
+    return json.dumps(value)

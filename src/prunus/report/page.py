@@ -1,0 +1,127 @@
+"""The page: scene, warnings, tables, score by iteration. Needs no network."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable
+from html import escape
+from importlib.resources import files
+
+from prunus.io.export import COLOURS
+from prunus.measure import branches, leaders, lengths_by_label
+from prunus.model import Label
+from prunus.pipeline import Result
+from prunus.report.scene import scene_traces
+
+STYLE = """
+body{font:15px/1.45 system-ui,sans-serif;color:#222;margin:0 auto;max-width:1500px;padding:16px 24px}
+h1{font-size:22px;margin:0}h2{font-size:16px;margin:22px 0 6px}p{margin:4px 0}
+.room{display:grid;grid-template-columns:minmax(0,1fr) 400px;gap:24px}
+@media(max-width:1000px){.room{grid-template-columns:1fr}}
+#scene{height:780px;border:1px solid #ddd}#score{height:230px}
+table{border-collapse:collapse;width:100%}td,th{padding:2px 8px;text-align:right;font-weight:400}
+th{color:#666;border-bottom:1px solid #ccc}td:first-child,th:first-child{text-align:left;padding-left:0}
+.dot{display:inline-block;width:11px;height:11px;border-radius:6px;margin-right:7px}
+.warn{background:#fff4d6;border-left:4px solid #e69f00;padding:6px 12px;margin:6px 0}
+.quiet{color:#666;font-size:13px}pre{font-size:12px;overflow:auto;background:#f6f6f6;padding:8px}
+"""
+
+AXIS = {"backgroundcolor": "#fcfcfc", "gridcolor": "#e5e5e5", "showbackground": True}
+LAYOUT = {
+    "margin": {"l": 0, "r": 0, "t": 0, "b": 0},
+    "legend": {"x": 0, "y": 1, "bgcolor": "rgba(255,255,255,0.75)", "itemsizing": "constant"},
+    "scene": {
+        "aspectmode": "data",
+        "camera": {"eye": {"x": 0.15, "y": -1.55, "z": 0.15}, "up": {"x": 0, "y": 0, "z": 1}},
+        "xaxis": {**AXIS, "title": {"text": "X along the row [m]"}},
+        "yaxis": {**AXIS, "title": {"text": "Y depth [m]"}},
+        "zaxis": {**AXIS, "title": {"text": "Z up [m]"}},
+    },
+}
+SCORE_LAYOUT = {
+    "margin": {"l": 42, "r": 8, "t": 6, "b": 36},
+    "xaxis": {"title": {"text": "iteration (edges grown)"}},
+    "yaxis": {"title": {"text": "best score"}},
+    "showlegend": False,
+}
+
+
+def report_page(result: Result, title: str, notes: Iterable[str] = ()) -> str:
+    """The report of one tree as HTML that holds all it needs; `notes` tell how it was read."""
+    library = (files("plotly") / "package_data" / "plotly.min.js").read_text(encoding="utf-8")
+    traces = scene_traces(result.in_house, result.graph)
+    score = [{"y": [round(value, 4) for value in result.history.tolist()], "mode": "lines"}]
+    return f"""<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>{escape(title)} - prunus</title>
+<style>{STYLE}</style><script>{library}</script></head><body>
+<h1>{escape(title)}</h1>{_summary(result)}
+{"".join(f'<p class="warn">{escape(text)}</p>' for text in result.warnings)}
+<div class="room"><div><div id="scene"></div>
+<p class="quiet">Drag turns, wheel zooms. Click a name in the list to show or hide it.
+House frame: X along the row, Y depth, Z up, metres, around the middle of the cloud; the files
+beside this page are in the frame of the input.</p>
+{"".join(f'<p class="quiet">{escape(note)}</p>' for note in notes)}</div>
+<div>{_labels(result)}{_leaders(result)}
+<h2>Score by iteration</h2><div id="score"></div>{_seconds(result)}
+<details><summary class="quiet">parameters, seed {result.seed}</summary>
+<pre>{escape(result.params.to_toml())}</pre></details></div></div>
+<script>
+const quiet = {{responsive: true, displaylogo: false}};
+Plotly.newPlot("scene", {json.dumps(traces)}, {json.dumps(LAYOUT)}, quiet);
+Plotly.newPlot("score", {json.dumps(score)}, {json.dumps(SCORE_LAYOUT)}, quiet);
+</script></body></html>
+"""
+
+
+def _summary(result: Result) -> str:
+    graph = result.graph
+    return (
+        f"<p>Score {result.score:.2f}. {len(graph.superpoints.cloud):,} points, "
+        f"{len(graph.xyz)} superpoints, {len(graph.edges)} candidate edges "
+        f"(confidence: {escape(graph.scored.scorer)}), {len(graph.tips)} tips.</p>"
+    )
+
+
+def _labels(result: Result) -> str:
+    skeleton = result.in_house
+    lengths = lengths_by_label(skeleton)
+    rows = []
+    for label in Label:
+        colour = "rgb({},{},{})".format(*COLOURS[label])
+        name = f'<span class="dot" style="background:{colour}"></span>{label.word.replace("_", " ")}'
+        count = len(branches(skeleton, label))
+        edges = int(skeleton.edges_with(label).sum())
+        rows.append([name, str(count), str(edges), f"{lengths[label]:.2f}"])
+    return "<h2>Labels</h2>" + _table(["", "branches", "edges", "length [m]"], rows)
+
+
+def _leaders(result: Result) -> str:
+    rows = [
+        [
+            str(number),
+            f"{leader.height:.2f}",
+            f"{leader.lean:.0f}",
+            "" if math.isnan(leader.spacing) else f"{leader.spacing:.2f}",
+            str(leader.side_branches),
+        ]
+        for number, leader in enumerate(leaders(result.in_house), 1)
+    ]
+    names = ["leader", "height [m]", "lean [deg]", "spacing [m]", "side branches"]
+    return "<h2>Leaders, from left to right</h2>" + _table(names, rows)
+
+
+def _seconds(result: Result) -> str:
+    stages = [*result.seconds.items()]
+    total = tuple(sum(times) for times in zip(*result.seconds.values(), strict=True))
+    rows = [
+        [name, f"{cpu * 1000:.0f}", f"{wall * 1000:.0f}"]
+        for name, (cpu, wall) in [*stages, ("total", total)]
+    ]
+    return "<h2>Time by stage</h2>" + _table(["stage", "CPU [ms]", "wall [ms]"], rows)
+
+
+def _table(names: list[str], rows: list[list[str]]) -> str:
+    head = "".join(f"<th>{name}</th>" for name in names)
+    body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
+    return f"<table><tr>{head}</tr>{body}</table>"

@@ -1,0 +1,88 @@
+"""The 3D scene of the report, as plotly traces: cloud, skeleton by label, evidence to switch on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from prunus.io.export import COLOURS
+from prunus.model import Floats, Ints, Label, SeededGraph, Skeleton
+
+MOST_POINTS = 40_000
+"""More points of the cloud would make the page slow, not clearer."""
+CLASSES = ((0.8, 1.01, "#7a5195"), (0.4, 0.8, "#bc7fbf"), (0.0, 0.4, "#d9d0dd"))
+"""Confidence classes of candidate edges: from, up to, colour."""
+
+Trace = dict[str, Any]
+
+
+def scene_traces(skeleton: Skeleton, graph: SeededGraph) -> list[Trace]:
+    """Traces of a skeleton and its graph, both in the house frame."""
+    return [
+        _cloud(graph),
+        *(_branch(skeleton, label) for label in Label),
+        _points("base", skeleton.xyz[:1], "#cc0000", 7, "diamond"),
+        _points("tips", graph.xyz[graph.tips], "#cc79a7", 5, "diamond"),
+        _points("superpoints", graph.xyz, "#888888", 3, "circle", shown=False),
+        *(_candidates(graph, low, high, colour) for low, high, colour in CLASSES),
+    ]
+
+
+def _cloud(graph: SeededGraph) -> Trace:
+    cloud = graph.superpoints.cloud
+    step = -(-len(cloud) // MOST_POINTS)
+    trace = _points("cloud", cloud.xyz[::step], "#9a9a9a", 1.2, "circle")
+    trace["marker"]["opacity"] = 0.55
+    if cloud.rgb is not None:
+        trace["marker"]["color"] = [f"rgb({r},{g},{b})" for r, g, b in cloud.rgb[::step].tolist()]
+    return trace
+
+
+def _branch(skeleton: Skeleton, label: Label) -> Trace:
+    rows = np.flatnonzero(skeleton.edges_with(label))
+    pairs = np.column_stack([skeleton.parent[rows], rows])
+    colour = "#{:02x}{:02x}{:02x}".format(*COLOURS[label])
+    return _lines(label.word.replace("_", " "), skeleton.xyz, pairs, colour, 9)
+
+
+def _candidates(graph: SeededGraph, low: float, high: float, colour: str) -> Trace:
+    chosen = graph.edges[(graph.confidence >= low) & (graph.confidence < high)]
+    name = f"candidates, confidence {low:.1f} to {min(high, 1):.1f}"
+    return _lines(name, graph.xyz, chosen, colour, 2, shown=False)
+
+
+def _points(
+    name: str, xyz: Floats, colour: str, size: float, symbol: str, shown: bool = True
+) -> Trace:
+    return {
+        **_columns(xyz),
+        **_common(name, shown),
+        "mode": "markers",
+        "marker": {"size": size, "color": colour, "symbol": symbol},
+        "hoverinfo": "skip" if name == "cloud" else "name+x+y+z",
+    }
+
+
+def _lines(
+    name: str, xyz: Floats, pairs: Ints, colour: str, width: float, shown: bool = True
+) -> Trace:
+    broken = np.full((len(pairs), 3, 3), np.nan)
+    broken[:, :2] = xyz[pairs]
+    return {
+        **_columns(broken.reshape(-1, 3)),
+        **_common(name, shown),
+        "mode": "lines",
+        "line": {"width": width, "color": colour},
+    }
+
+
+def _common(name: str, shown: bool) -> Trace:
+    return {"type": "scatter3d", "name": name, "visible": True if shown else "legendonly"}
+
+
+def _columns(xyz: Floats) -> Trace:
+    return {
+        axis: [None if np.isnan(value) else value for value in np.round(xyz[:, i], 4).tolist()]
+        for i, axis in enumerate("xyz")
+    }
