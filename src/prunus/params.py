@@ -100,6 +100,14 @@ class Search(_Group):
     )
 
 
+class Leaders(_Group):
+    """Leaders that end at no tip (beyond the paper)."""
+
+    min_length: float = _number(
+        0.35, "-", "m", "shorter ones that end at no tip are dropped; 0 keeps all", ge=0, le=10
+    )
+
+
 class SideBranches(_Group):
     """Locating side branches."""
 
@@ -130,6 +138,7 @@ class Parameters(_Group):
     turn: Turn = Turn()
     grow: Grow = Grow()
     search: Search = Search()
+    leaders: Leaders = Leaders()
     side_branches: SideBranches = SideBranches()
 
     @classmethod

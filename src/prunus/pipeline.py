@@ -15,11 +15,12 @@ from prunus.errors import PrunusError
 from prunus.measure import remarks
 from prunus.model import Floats, PointCloud, SeededGraph, Skeleton
 from prunus.params import Parameters
-from prunus.search import search
+from prunus.search import search, skel_score
 from prunus.stages.candidates import find_candidates
 from prunus.stages.confidence import EdgeScorer, HandmadeScorer, score_edges
 from prunus.stages.seeds import find_seeds
 from prunus.stages.sidebranches import find_side_branches
+from prunus.stages.stubs import drop_stubs
 from prunus.stages.superpoints import find_superpoints
 
 Seconds = dict[str, tuple[float, float]]
@@ -81,12 +82,15 @@ def skeletonize(
         seeded, warnings = find_seeds(scored, params, at)
     with _timed(seconds, "search"):
         found = search(seeded, params, rng)
+    with _timed(seconds, "stubs"):
+        framework = drop_stubs(found.skeleton, seeded.tips, params.leaders.min_length)
     with _timed(seconds, "side branches"):
-        skeleton = find_side_branches(found.skeleton, seeded, params)
+        skeleton = find_side_branches(framework, seeded, params)
     with _timed(seconds, "measures"):
         warnings += remarks(skeleton, seeded)
 
-    return Result(skeleton, seeded, found.score, found.history, seconds, params, seed, warnings)
+    score = skel_score(skeleton, params)
+    return Result(skeleton, seeded, score, found.history, seconds, params, seed, warnings)
 
 
 @contextmanager

@@ -67,10 +67,11 @@ def tip_paths(
         settled[d] = True
         follower = following[d]
         if follower == d:
-            on_path[d] = 0
+            on_path[d, :] = 0
         else:
             penalty = turn[pair_of[d] + follower]
-            on_path[d] = on_path[follower]
+            for w in range(on_path.shape[1]):
+                on_path[d, w] = on_path[follower, w]
             after[d] = after[follower] + score[follower] - penalty
             first[d] = max(first[follower], penalty)
             second[d] = max(second[follower], min(first[follower], penalty))

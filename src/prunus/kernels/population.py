@@ -370,8 +370,9 @@ def advance(
             continue
         parent, d, label = out.parent[stands[c]], out.edge[stands[c]], out.label[stands[c]]
         tail, head = graph.tail[d], graph.head[d]
-        new.entry[u] = old.entry[parent]
-        new.state[u] = old.state[parent]
+        for n in range(old.entry.shape[1]):
+            new.entry[u, n] = old.entry[parent, n]
+            new.state[u, n] = old.state[parent, n]
         new.nodes[u] = old.nodes[parent]
         new.live[u] = live[c]
         new.entry[u, head] = d * LABELS + label

@@ -90,13 +90,15 @@ def find_worth(
     for label in range(L):
         start = 0 if enters == ROOT else fresh[label]
         stop = fresh[0] if enters == ROOT else (fresh[label + 1] if label + 1 < L else S)
-        sums[start:stop] = NEVER
+        for state in range(start, stop):
+            sums[state] = NEVER
         sums[start] = 0.0
         for d in range(graph.out_start[n], graph.out_start[n + 1]):
             child = head[d]
             if into[child] != d:
                 continue
-            grown[start:stop] = sums[start:stop]
+            for state in range(start, stop):
+                grown[state] = sums[state]
             for below in range(L):
                 brings = gain[d, below] + worth[child, below]
                 if enters != ROOT and below == label:
@@ -107,7 +109,8 @@ def find_worth(
                     after = following[state, below]
                     if after >= 0 and sums[state] + brings > grown[after]:
                         grown[after] = sums[state] + brings
-            sums[start:stop] = grown[start:stop]
+            for state in range(start, stop):
+                sums[state] = grown[state]
         best = sums[start] if may_end[n] else NEVER
         for state in range(start + 1, stop):
             best = max(best, sums[state])

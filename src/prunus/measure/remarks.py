@@ -31,7 +31,7 @@ def remarks(skeleton: Skeleton, graph: SeededGraph) -> list[str]:
 def explained_points(skeleton: Skeleton, graph: SeededGraph) -> float:
     """Share of the points within r_super of a superpoint of the skeleton."""
     near = graph.superpoints.points_near(skeleton.superpoint[skeleton.superpoint >= 0])
-    return len(near) / len(graph.superpoints.cloud)
+    return float(near.mean())
 
 
 def _short_supports(skeleton: Skeleton, graph: SeededGraph) -> list[str]:

