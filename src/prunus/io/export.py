@@ -1,4 +1,4 @@
-"""Skeletons for other tools: SWC tables and coloured PLY edges."""
+"""Skeletons for other tools: SWC tables, coloured PLY edges, GraphML."""
 
 from __future__ import annotations
 
@@ -108,6 +108,16 @@ def write_ply(path: str | Path, skeleton: Skeleton) -> None:
     ]
     tables = {"vertex": table_of(nodes), "edge": table_of(edges)}
     write_bytes(Path(path), ply_bytes(tables, comments))
+
+
+def write_graphml(path: str | Path, skeleton: Skeleton) -> None:
+    """GraphML with all that `Skeleton.to_networkx` holds: for yEd, Gephi, igraph, networkx."""
+    import networkx as nx
+
+    graph = skeleton.to_networkx()
+    for _, columns in graph.nodes(data=True):
+        columns |= dict(zip("xyz", columns.pop("xyz"), strict=True))
+    write_bytes(Path(path), "\n".join(nx.generate_graphml(graph)).encode())
 
 
 def _zero_if_unknown(radius: Floats) -> Floats:

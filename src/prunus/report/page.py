@@ -89,7 +89,9 @@ def _labels(result: Result) -> str:
     rows = []
     for label in Label:
         colour = "rgb({},{},{})".format(*COLOURS[label])
-        name = f'<span class="dot" style="background:{colour}"></span>{label.word.replace("_", " ")}'
+        name = (
+            f'<span class="dot" style="background:{colour}"></span>{label.word.replace("_", " ")}'
+        )
         count = len(branches(skeleton, label))
         edges = int(skeleton.edges_with(label).sum())
         rows.append([name, str(count), str(edges), f"{lengths[label]:.2f}"])

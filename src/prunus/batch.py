@@ -1,0 +1,193 @@
+"""One file after another: read, skeletonize, write everything a user wants beside each other."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from prunus import __version__
+from prunus.errors import PrunusError
+from prunus.intake import Scan, open_scan
+from prunus.io.export import write_ply, write_swc
+from prunus.io.readers import READERS
+from prunus.io.safely import write_bytes
+from prunus.io.skeletons import write_skeleton
+from prunus.kernels.compiled import mark_compiled
+from prunus.measure import branches
+from prunus.model import Label
+from prunus.params import Parameters
+from prunus.pipeline import Result, skeletonize
+from prunus.report import report_page
+from prunus.stages.confidence import EdgeScorer, HandmadeScorer
+
+SCORERS: dict[str, type[EdgeScorer]] = {"handmade": HandmadeScorer}
+"""Edge scorers by the name that `--scorer` takes."""
+
+Record = dict[str, Any]
+"""What `--json` prints of one tree."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """How every file of a batch is treated."""
+
+    base: tuple[float, float, float] | None = None
+    frame: str = "auto"
+    unit: str | None = None
+    params: Parameters = Parameters()
+    seed: int = 0
+    scorer: str = "handmade"
+    report: bool = True
+
+
+@dataclass(frozen=True)
+class Task:
+    """One input and the folder of its outputs."""
+
+    path: Path
+    folder: Path
+
+
+def plan(inputs: list[Path], output: Path | None) -> tuple[list[Task], list[Record]]:
+    """The tasks of a batch, folders searched for clouds; inputs that cannot be one as failures.
+
+    One input is written to `output`, several to a folder of their own name below it.
+    """
+    files: list[Path] = []
+    failed = []
+    for path in inputs:
+        inside = clouds_in(path) if path.is_dir() else [path]
+        if not inside:
+            failed.append(failure(path, f"{path}: no point cloud in this folder"))
+        files += inside
+    root = output or Path("prunus-out")
+    if len(files) == 1 and output is not None and not inputs[0].is_dir():
+        return [Task(files[0], output)], failed
+    tasks: dict[Path, Task] = {}
+    for path in files:
+        folder = root / path.stem
+        if folder in tasks:
+            other = tasks[folder].path
+            text = f"{path}: has the same name as {other}; both would be written to {folder}"
+            failed.append(failure(path, text))
+        else:
+            tasks[folder] = Task(path, folder)
+    return list(tasks.values()), failed
+
+
+def clouds_in(folder: Path) -> list[Path]:
+    """The point clouds right inside a folder, by name."""
+    return sorted(path for path in folder.iterdir() if path.suffix.lower() in READERS)
+
+
+def run(tasks: list[Task], options: Options, jobs: int) -> Iterator[Record]:
+    """The records of the tasks as they are done; a bad file gives a record that says why."""
+    if jobs == 1 or len(tasks) <= 1:
+        yield from (attempt(task, options) for task in tasks)
+        return
+    with ProcessPoolExecutor(min(jobs, len(tasks)), mp_context=get_context("spawn")) as pool:
+        waiting = [pool.submit(attempt, task, options) for task in tasks]
+        yield from (done.result() for done in as_completed(waiting))
+
+
+def attempt(task: Task, options: Options) -> Record:
+    """Do one task; a PrunusError becomes a record of failure."""
+    try:
+        return do(task, options)
+    except PrunusError as error:
+        text = str(error)
+        named = text if str(task.path) in text else f"{task.path}: {text}"
+        return failure(task.path, named)
+
+
+def do(task: Task, options: Options) -> Record:
+    """Read the file, skeletonize it, write all outputs, and return what `--json` prints."""
+    cpu, wall = time.process_time(), time.perf_counter()
+    scan = open_scan(task.path, options.frame, options.unit)
+    reading = (time.process_time() - cpu, time.perf_counter() - wall)
+    scorer = SCORERS[options.scorer]()
+    result = skeletonize(scan.cloud, options.base, options.params, options.seed, scorer)
+    mark_compiled()
+    cpu, wall = time.process_time(), time.perf_counter()
+    write_outputs(task.folder, result, scan, options.report)
+    writing = (time.process_time() - cpu, time.perf_counter() - wall)
+    seconds = {"read": reading, **result.seconds, "write": writing}
+    return _record(task, result, scan, seconds)
+
+
+def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> None:
+    """skeleton.json, .swc and .ply, params.toml and, where wanted, report.html."""
+    if folder.exists() and not folder.is_dir():
+        raise PrunusError(f"{folder}: is a file; expected a folder to write to")
+    if report:
+        page = report_page(result, scan.file.path.name, scan.notes)
+        write_bytes(folder / "report.html", page.encode())
+    write_swc(folder / "skeleton.swc", result.skeleton)
+    write_ply(folder / "skeleton.ply", result.skeleton)
+    write_bytes(folder / "params.toml", result.params.to_toml().encode())
+    write_skeleton(
+        folder / "skeleton.json",
+        result.skeleton,
+        score=result.score,
+        input={
+            "file": scan.file.path.name,
+            "sha256": scan.file.sha256,
+            "points": len(scan.cloud),
+        },
+        params=result.params.model_dump(),
+        seed=result.seed,
+        version_of_prunus=__version__,
+    )
+
+
+def _record(
+    task: Task, result: Result, scan: Scan, seconds: dict[str, tuple[float, float]]
+) -> Record:
+    skeleton, graph = result.skeleton, result.graph
+    columns: list[Record] = []
+    for kind in (0, 1):
+        spent = {stage: round(both[kind], 4) for stage, both in seconds.items()}
+        columns.append({**spent, "total": round(sum(both[kind] for both in seconds.values()), 4)})
+    return {
+        "file": str(task.path),
+        "ok": True,
+        "error": None,
+        "skeleton": str(task.folder / "skeleton.json"),
+        "score": result.score,
+        "points": len(scan.cloud),
+        "superpoints": len(graph.xyz),
+        "edges": len(graph.edges),
+        "tips": len(graph.tips),
+        "labels": {label.word: int(skeleton.edges_with(label).sum()) for label in Label},
+        "leaders": len(branches(skeleton, Label.LEADER)),
+        "side_branches": len(branches(skeleton, Label.SIDE_BRANCH)),
+        "cpu_s": columns[0],
+        "wall_s": columns[1],
+        "warnings": [*scan.notes, *result.warnings],
+    }
+
+
+def failure(path: Path, text: str) -> Record:
+    """The record of a file that could not be done: all keys, none with a value."""
+    return {
+        "file": str(path),
+        "ok": False,
+        "error": text,
+        "skeleton": None,
+        "score": None,
+        "points": None,
+        "superpoints": None,
+        "edges": None,
+        "tips": None,
+        "labels": None,
+        "leaders": None,
+        "side_branches": None,
+        "cpu_s": None,
+        "wall_s": None,
+        "warnings": [],
+    }

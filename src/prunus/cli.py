@@ -1,0 +1,212 @@
+"""The command line: one short function a command; heavy imports inside the command."""
+
+from __future__ import annotations
+
+import os
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+
+import typer
+
+from prunus import __version__
+from prunus.errors import PrunusError
+
+if TYPE_CHECKING:
+    from prunus.params import Parameters
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode="markdown",
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help="""From a 3D point cloud of a dormant fruit tree to a labelled skeleton.
+
+Try it: `prunus demo`
+
+One tree, base picked by hand: `prunus skeletonize tree.ply --base 1.40 0.90 1.42 -o out`
+
+A folder of trees, two at a time: `prunus skeletonize scans/ -o out --jobs 2`
+""",
+)
+
+
+class Frame(StrEnum):
+    """Named input frames."""
+
+    AUTO = "auto"
+    Z_UP = "z-up"
+    OPTICAL = "optical"
+
+
+class Unit(StrEnum):
+    """Units of the input file."""
+
+    M = "m"
+    CM = "cm"
+    MM = "mm"
+
+
+class Scorer(StrEnum):
+    """Who gives the edge confidence."""
+
+    HANDMADE = "handmade"
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"prunus {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _prunus(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Say the version.")
+    ] = False,
+) -> None:
+    """Hold the options before any command."""
+
+
+@app.command()
+def skeletonize(
+    clouds: Annotated[list[Path], typer.Argument(help="Point clouds, or folders of them.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Folder to write to. [default: prunus-out/<name>]"),
+    ] = None,
+    base: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(help="A point where the trunk meets the ground, in the frame of the file."),
+    ] = None,
+    frame: Annotated[
+        Frame, typer.Option(help="Frame of the file; auto goes by the evidence in the cloud.")
+    ] = Frame.AUTO,
+    unit: Annotated[
+        Unit | None, typer.Option(help="Unit of the file. [default: m, checked]")
+    ] = None,
+    points: Annotated[
+        str | None, typer.Option(help="Points drawn at random, or 'all'. [default: 50000]")
+    ] = None,
+    params: Annotated[
+        Path | None, typer.Option(help="Parameters as TOML; every run writes the file it used.")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
+    scorer: Annotated[
+        Scorer, typer.Option(help="Who gives the edge confidence.")
+    ] = Scorer.HANDMADE,
+    no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.html.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="One line of JSON a tree on standard output.")
+    ] = False,
+    jobs: Annotated[int, typer.Option(min=1, help="Trees worked on at the same time.")] = 1,
+) -> None:
+    """Turn clouds (PLY, PCD, XYZ, TXT, CSV, LAS, LAZ, NPY, NPZ) into labelled skeletons.
+
+    Writes skeleton.json, skeleton.swc, skeleton.ply, report.html and params.toml for each tree.
+
+    A real scan in a camera's frame: `prunus skeletonize tree.ply --frame optical --base 1.4 0.9 1.4`
+
+    Many, for a script: `prunus skeletonize scans/*.ply -o out --jobs 4 --json > trees.jsonl`
+    """
+    from prunus.batch import Options, plan
+
+    try:
+        options = Options(
+            base, frame.value, unit and unit.value, _parameters(params, points), seed,
+            scorer.value, not no_report,
+        )  # fmt: skip
+    except PrunusError as error:
+        _stop(error)
+    tasks, failed = plan(clouds, output)
+    _report(tasks, failed, options, json, jobs)
+
+
+@app.command()
+def demo(
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder to write to.")] = Path(
+        "prunus-out/demo"
+    ),
+    seed: Annotated[int, typer.Option(min=0, help="Another seed, another tree.")] = 0,
+) -> None:
+    """Grow a tree, scan it, skeletonize the scan, compare with the truth, write the report."""
+    from prunus.batch import Options, Task
+    from prunus.demo import compare, simulated_scan
+
+    try:
+        truth = simulated_scan(output, seed)
+    except PrunusError as error:
+        _stop(error)
+    base = tuple(truth.xyz[0].tolist())
+    _report([Task(output / "scan.ply", output)], [], Options(base, "z-up", seed=seed), False, 1)
+    for line in compare(output, truth):
+        typer.echo(line)
+
+
+@app.command()
+def convert(
+    source: Annotated[Path, typer.Argument(help="A skeleton (.json, .swc) or a point cloud.")],
+    target: Annotated[Path, typer.Argument(help="What to write; the ending says which kind.")],
+    unit: Annotated[Unit | None, typer.Option(help="Unit of a cloud. [default: m]")] = None,
+) -> None:
+    """Convert skeletons (to .json, .swc, .ply, .graphml) and clouds (to .ply, .xyz, .csv, .npz).
+
+    For Blender: `prunus convert out/skeleton.json tree.ply`
+
+    A cloud for another tool: `prunus convert tree.laz tree.xyz`
+    """
+    from prunus.convert import convert_file
+
+    try:
+        convert_file(source, target, unit and unit.value)
+    except PrunusError as error:
+        _stop(error)
+
+
+def _parameters(path: Path | None, points: str | None) -> Parameters:
+    from prunus.params import Parameters
+
+    params = Parameters() if path is None else Parameters.from_toml(path)
+    if points is None:
+        return params
+    if points not in ("all", "none") and not points.isdigit():
+        raise PrunusError(f"--points: {points!r}; expected a number or 'all'")
+    return params.changed("input", points=int(points) if points.isdigit() else points)
+
+
+def _report(tasks: list[Any], failed: list[Any], options: Any, as_json: bool, jobs: int) -> None:
+    """Run the tasks, say what came of each, and exit with 1 if any failed."""
+    from prunus.batch import run
+    from prunus.kernels.compiled import is_compiled
+    from prunus.progress import Teller
+
+    with Teller(len(tasks), as_json) as teller:
+        if tasks and not is_compiled():
+            teller.say("compiling the kernels (the first run only, about half a minute)")
+            jobs = 1
+        for record in failed:
+            teller.tell(record)
+        for record in run(tasks, options, jobs):
+            teller.tell(record)
+    if teller.failures:
+        raise typer.Exit(1)
+
+
+def _stop(error: PrunusError) -> NoReturn:
+    typer.echo(f"prunus: {error}", err=True)
+    raise typer.Exit(2)
+
+
+def main() -> None:
+    """Run the command line; a closed pipe and Ctrl-C end it quietly."""
+    try:
+        app()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,34 @@
+"""The demonstration: a simulated scan through the whole chain."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from prunus.evaluate.curves import curve_measures
+from prunus.io.clouds import write_cloud
+from prunus.io.skeletons import read_skeleton, write_skeleton
+from prunus.model import Label, Skeleton
+from prunus.simulate import grow_tree, scan_tree
+
+
+def simulated_scan(folder: Path, seed: int) -> Skeleton:
+    """Grow and scan a tree; writes scan.ply and truth.json, and returns the truth."""
+    rng = np.random.default_rng(seed)
+    truth = grow_tree(rng)
+    cloud = scan_tree(truth, rng)
+    write_cloud(folder / "scan.ply", cloud.to_input.apply(cloud.xyz))
+    write_skeleton(folder / "truth.json", truth)
+    return truth
+
+
+def compare(folder: Path, truth: Skeleton) -> list[str]:
+    """Lines that say how much of each label was found and how much of what was found is right."""
+    measures = curve_measures(read_skeleton(folder / "skeleton.json"), truth)
+    lines = ["  against the truth:  found  right"]
+    for label in Label:
+        recall, precision = (measures[f"{label.word}_{kind}"] for kind in ("recall", "precision"))
+        name = label.word.replace("_", " ")
+        lines.append(f"    {name:<17} {recall:5.0%}  {precision:5.0%}".replace("nan%", "   -"))
+    return lines

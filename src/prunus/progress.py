@@ -1,0 +1,79 @@
+"""What the command line says while it works: a bar on a terminal, plain lines in a pipe."""
+
+from __future__ import annotations
+
+import json
+import sys
+from types import TracebackType
+from typing import Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+
+class Teller:
+    """Tells records as they come, and at the end which failed and why."""
+
+    def __init__(self, total: int, as_json: bool) -> None:
+        """`as_json`: one line of JSON a record on standard output, and nothing else there."""
+        self.as_json = as_json
+        self.failures: list[dict[str, Any]] = []
+        self.done = 0
+        self.console = Console(stderr=True, highlight=False)
+        self.bar = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            console=self.console,
+            transient=True,
+            disable=not sys.stderr.isatty(),
+        )
+        self.work = self.bar.add_task("trees", total=total)
+
+    def __enter__(self) -> Teller:
+        self.bar.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.bar.stop()
+        if kind is None and self.failures and self.done + len(self.failures) > 1:
+            count = self.done + len(self.failures)
+            self.say(f"{len(self.failures)} of {count} failed:")
+            for record in self.failures:
+                self.say(f"  {record['error']}")
+
+    def say(self, text: str) -> None:
+        """A line for the person, on standard error."""
+        self.console.print(text, markup=False, soft_wrap=True)
+
+    def tell(self, record: dict[str, Any]) -> None:
+        """What came of one tree."""
+        self.bar.advance(self.work)
+        if self.as_json:
+            sys.stdout.write(json.dumps(record) + "\n")
+            sys.stdout.flush()
+        if record["ok"]:
+            self.done += 1
+            if not self.as_json:
+                self._tell_tree(record)
+        else:
+            self.failures.append(record)
+            self.say(f"prunus: {record['error']}")
+
+    def _tell_tree(self, record: dict[str, Any]) -> None:
+        """What a person wants to know of a tree, on standard output."""
+        edges = ", ".join(f"{word.replace('_', ' ')} {n}" for word, n in record["labels"].items())
+        typer.echo(
+            f"{record['file']}: {record['leaders']} leaders, {record['side_branches']} side "
+            f"branches (edges: {edges}) in {record['cpu_s']['total']:.2f} s of CPU"
+        )
+        for warning in record["warnings"]:
+            typer.echo(f"  {warning}")
+        typer.echo(f"  written: {record['skeleton']} and its neighbours")
