@@ -75,7 +75,7 @@ def skeletonize(
     clouds: Annotated[list[Path], typer.Argument(help="Point clouds, or folders of them.")],
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Folder to write to. [default: prunus-out/<name>]"),
+        typer.Option("-o", "--output", help="Folder to write to. [default: prunus-out/NAME]"),
     ] = None,
     base: Annotated[
         tuple[float, float, float] | None,

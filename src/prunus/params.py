@@ -58,6 +58,9 @@ class Confidence(_Group):
     alpha_conf: float = _number(
         0.40, "alpha_conf", "1", "edges under this confidence cost score", ge=0, lt=1
     )
+    floor: float = _number(
+        0.05, "-", "1", "edges under this confidence are left out (beyond the paper)", ge=0, lt=1
+    )
 
 
 class Tips(_Group):

@@ -77,7 +77,7 @@ def skeletonize(
     with _timed(seconds, "candidates"):
         candidates = find_candidates(superpoints)
     with _timed(seconds, "confidence"):
-        scored = score_edges(candidates, scorer or HandmadeScorer())
+        scored = score_edges(candidates, scorer or HandmadeScorer(), params.confidence)
     with _timed(seconds, "seeds"):
         seeded, warnings = find_seeds(scored, params, at)
     with _timed(seconds, "search"):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from prunus.kernels.frames import HIGH, WIDE
 from prunus.model import Bools, CandidateGraph, Floats, ScoredGraph
+from prunus.params import Confidence
 from prunus.stages.images import edge_images
 
 
@@ -24,9 +25,21 @@ class EdgeScorer(Protocol):
         """Conf(e) for every candidate edge."""
 
 
-def score_edges(candidates: CandidateGraph, scorer: EdgeScorer) -> ScoredGraph:
-    """The graph with the confidence that the scorer gives."""
-    return ScoredGraph(candidates, scorer(candidates), scorer.name)
+def score_edges(
+    candidates: CandidateGraph, scorer: EdgeScorer, params: Confidence
+) -> ScoredGraph:
+    """The candidates with the confidence that the scorer gives, less the hopeless ones.
+
+    A branch with a gap has poor edges, worth crossing for what lies beyond; but an edge that is
+    all but certainly none would tie another tree to this one for a small price.
+    """
+    confidence = scorer(candidates)
+    kept = confidence >= params.floor
+    return ScoredGraph(
+        CandidateGraph(candidates.superpoints, candidates.edges[kept]),
+        confidence[kept],
+        scorer.name,
+    )
 
 
 @dataclass(frozen=True)
