@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -39,7 +39,7 @@ class Options:
     base: tuple[float, float, float] | None = None
     frame: str = "auto"
     unit: str | None = None
-    params: Parameters = Parameters()
+    params: Parameters = field(default_factory=Parameters)
     seed: int = 0
     scorer: str = "handmade"
     report: bool = True

@@ -107,7 +107,7 @@ def skeletonize(
 
     Writes skeleton.json, skeleton.swc, skeleton.ply, report.html and params.toml for each tree.
 
-    A real scan in a camera's frame: `prunus skeletonize tree.ply --frame optical --base 1.4 0.9 1.4`
+    In a camera's frame: `prunus skeletonize tree.ply --frame optical --base 1.4 0.9 1.4`
 
     Many, for a script: `prunus skeletonize scans/*.ply -o out --jobs 4 --json > trees.jsonl`
     """

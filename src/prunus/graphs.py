@@ -26,9 +26,11 @@ from prunus.stages.seeds import find_tips
 
 @dataclass(frozen=True, eq=False)
 class GraphSkeleton:
-    """What `search_graph` found: edges (m, 2) parent -> child in the caller's node indices, labels
-    (m,) as words (`trunk`, `support`, `leader`), SkelScore, the best score (I,) of each iteration,
-    and the same as a `Skeleton`.
+    """What `search_graph` found.
+
+    edges (m, 2) parent -> child in the caller's node indices; labels (m,) as words: trunk, support,
+    leader; score: SkelScore; history (I,) the best score of each iteration of the population;
+    skeleton: the same as a `Skeleton`.
     """
 
     edges: Ints
@@ -61,9 +63,12 @@ def search_graph(
     if tips is None:
         ends = find_tips(graph.xyz, graph.edges, graph.confidence, params)
     else:
+        _check_indices("tips", np.asarray(tips), count)
         ends = np.unique(np.asarray(tips, np.int64))
-        _check_indices("tips", ends, count)
-    seeded = SeededGraph(graph, int(base), ends[ends != base])
+    ends = ends[ends != base]
+    if len(ends) == 0:
+        raise PrunusError("tips: none found; expected one or more nodes to grow to, not the base")
+    seeded = SeededGraph(graph, int(base), ends)
     found = search(seeded, params, np.random.default_rng(seed))
     back = graph.candidates.superpoints.cloud.to_input
     pairs = found.skeleton.superpoint[found.skeleton.edges]

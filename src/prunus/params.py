@@ -15,7 +15,7 @@ from prunus.errors import PrunusError
 PI = math.pi
 
 
-def _number(default: float, symbol: str, unit: str, about: str, **limits: Any) -> Any:
+def _number(default: Any, symbol: str, unit: str, about: str, **limits: Any) -> Any:
     return Field(
         default, description=about, json_schema_extra={"symbol": symbol, "unit": unit}, **limits
     )
@@ -28,11 +28,8 @@ class _Group(BaseModel):
 class Input(_Group):
     """What is read of the cloud (method.md 1)."""
 
-    points: int | Literal["all"] = Field(
-        50_000,
-        ge=1,
-        description="points drawn at random from the cloud; 'all' keeps every one",
-        json_schema_extra={"symbol": "P", "unit": "points"},
+    points: int | Literal["all"] = _number(
+        50_000, "P", "points", "points drawn at random from the cloud; 'all' keeps every one", ge=1
     )
 
     @field_validator("points", mode="before")
@@ -96,10 +93,8 @@ class Search(_Group):
     k_max_rep: int = _number(
         3, "k_MaxRep", "skeletons", "copies of one skeleton in the population", ge=1, le=1_000_000
     )
-    refine: bool = Field(
-        True,
-        description="improve the best skeleton one edge at a time (beyond the paper)",
-        json_schema_extra={"symbol": "-", "unit": "-"},
+    refine: bool = _number(
+        True, "-", "-", "improve the best skeleton one edge at a time (beyond the paper)"
     )
 
 

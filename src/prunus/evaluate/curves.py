@@ -42,7 +42,7 @@ def sampled(skeleton: Skeleton) -> tuple[Floats, Ints]:
 
 
 def covered(points: Floats, by: Floats) -> float:
-    """Share of the points (S, 3) with one of the others within the tolerance; NaN without points."""
+    """Share of the points (S, 3) with one of the others within the tolerance; NaN of none."""
     if len(points) == 0:
         return float("nan")
     if len(by) == 0:

@@ -132,7 +132,8 @@ def _npy(xyz: Floats, _: Bytes | None) -> bytes:
 
 def _npz(xyz: Floats, rgb: Bytes | None) -> bytes:
     out = io.BytesIO()
-    np.savez_compressed(out, xyz=xyz, **({} if rgb is None else {"rgb": rgb}))
+    arrays: dict[str, Any] = {"xyz": xyz} if rgb is None else {"xyz": xyz, "rgb": rgb}
+    np.savez_compressed(out, **arrays)
     return out.getvalue()
 
 

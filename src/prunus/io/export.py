@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -18,7 +19,7 @@ COLOURS = {
     Label.LEADER: (0, 114, 178),
     Label.SIDE_BRANCH: (0, 158, 115),
 }
-"""Red, green, blue of each label: the palette of Okabe and Ito, which colour-blind people tell apart."""
+"""Red, green, blue of each label: Okabe and Ito's palette, which colour-blind people tell apart."""
 
 SWC_TYPES = {Label.TRUNK: 16, Label.SUPPORT: 17, Label.LEADER: 18, Label.SIDE_BRANCH: 19}
 """SWC structure identifiers; those over 15 are free for such use."""
@@ -91,13 +92,13 @@ def write_ply(path: str | Path, skeleton: Skeleton) -> None:
     The colour of a node is that of its edge from the parent.
     """
     colour = np.array([COLOURS[Label(label)] for label in skeleton.label], np.uint8)
-    nodes = {
+    nodes: dict[str, Any] = {
         **{name: skeleton.xyz[:, axis] for axis, name in enumerate("xyz")},
         **{name: colour[:, c] for c, name in enumerate(("red", "green", "blue"))},
         "label": skeleton.label.astype(np.uint8),
         "radius": _zero_if_unknown(skeleton.radius),
     }
-    edges = {
+    edges: dict[str, Any] = {
         "vertex1": skeleton.edges[:, 0].astype(np.int32),
         "vertex2": skeleton.edges[:, 1].astype(np.int32),
         **{name: colour[1:, c] for c, name in enumerate(("red", "green", "blue"))},

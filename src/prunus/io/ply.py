@@ -49,8 +49,8 @@ def read_ply(content: bytes, path: Path, wanted: tuple[str, ...] = ("vertex",)) 
             break
         if element.has_list:
             raise PrunusError(
-                f"{path}: the element {element.name!r} has a list before {wanted[-1]!r} is complete; "
-                "expected plain numbers"
+                f"{path}: the element {element.name!r} holds a list; "
+                f"expected plain numbers up to the element {wanted[-1]!r}"
             )
         dtype = np.dtype([(name, ORDERS[form] + code) for name, code in element.fields])
         if form == "ascii":

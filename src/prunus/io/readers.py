@@ -49,11 +49,11 @@ def _read_ply(content: bytes, path: Path) -> Columns:
 
 
 def _read_pcd(content: bytes, path: Path) -> Columns:
-    from pypcd4 import PointCloud as Pcd
+    from pypcd4.pypcd4 import PointCloud as Pcd
 
     # pypcd4 raises whatever its parsing trips over; the file is at fault in every case.
     try:
-        cloud = Pcd.from_fileobj(io.BytesIO(content))
+        cloud = Pcd.from_fileobj(io.BufferedReader(io.BytesIO(content)))
         fields = cloud.fields
         table = {name: cloud.pc_data[name].reshape(-1) for name in fields}
     except Exception as error:
@@ -142,7 +142,7 @@ def _array(values: Any, path: Path) -> Floats:
         raise PrunusError(
             f"{path}: holds {values.dtype} of shape {values.shape}; expected numbers (P, 3)"
         )
-    return values[:, :3].astype(np.float64)
+    return np.asarray(values[:, :3], np.float64)
 
 
 READERS: dict[str, Callable[[bytes, Path], Columns]] = {

@@ -1,10 +1,13 @@
-"""`skeleton.json`: the one module that reads and writes it. Its JSON Schema is docs/skeleton.schema.json."""
+"""`skeleton.json`: the one module that reads and writes it.
+
+Its JSON Schema is committed as docs/skeleton.schema.json.
+"""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -28,7 +31,7 @@ class InputRecord(BaseModel):
 
 
 class SkeletonFile(BaseModel):
-    """The contents of `skeleton.json`. One entry a node; the edge of a node is that from its parent."""
+    """The contents of `skeleton.json`: one entry a node, whose edge is that from its parent."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", title="prunus skeleton")
 
@@ -54,7 +57,7 @@ def write_skeleton(path: str | Path, skeleton: Skeleton, **evidence: Any) -> Non
     record = SkeletonFile(
         nodes=skeleton.xyz.tolist(),
         parent=skeleton.parent.tolist(),
-        label=[Label(label).word for label in skeleton.label],
+        label=[cast(Word, Label(label).word) for label in skeleton.label],
         confidence=_nullable(skeleton.confidence),
         radius=_nullable(skeleton.radius),
         superpoint=skeleton.superpoint.tolist(),

@@ -23,12 +23,13 @@ Returned = TypeVar("Returned")
 
 def kernel(function: Callable[Parameters, Returned]) -> Callable[Parameters, Returned]:
     """Compile at the first call, keep the machine code on disk, check no bounds."""
-    before: Any = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(cache_dir())
+    config: Any = numba.config
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(cache_dir())
     try:
-        return numba.njit(cache=True, nogil=True)(function)  # type: ignore[no-any-return]
+        return numba.njit(cache=True, nogil=True)(function)
     finally:
-        numba.config.CACHE_DIR = before
+        config.CACHE_DIR = before
 
 
 @cache

@@ -131,8 +131,8 @@ def edge_images(
         for q in range(count):
             along = local[q, 0] * x[0] + local[q, 1] * x[1] + local[q, 2] * x[2]
             aside = local[q, 0] * y[0] + local[q, 1] * y[1] + local[q, 2] * y[2]
-            column = int(math.floor((along / (4.0 * radius) + 0.5) * WIDE))
-            row = int(math.floor((aside / (2.0 * radius) + 0.5) * HIGH))
+            column = math.floor((along / (4.0 * radius) + 0.5) * WIDE)
+            row = math.floor((aside / (2.0 * radius) + 0.5) * HIGH)
             if 0 <= column < WIDE and 0 <= row < HIGH:
                 image[row, column] += 1.0
         peak = image.max()

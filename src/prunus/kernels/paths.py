@@ -46,8 +46,7 @@ def tip_paths(
     is out of reach. Fills, for each edge d: `on_path` (D, W) the nodes of its path after its tail,
     `after` the sum of EdgeScore (`score`) of the edges after d less all turn penalties from d on,
     `first` and `second` the two largest of those penalties. Paths visit no node twice and pass
-    through no base. `pair_of[d]` is where the turns from d start in `turn`, less the first edge that leaves
-    its head, so that `pair_of[d] + follower` is the turn into `follower`.
+    through no base. The turn from d into an edge `follower` is `turn[pair_of[d] + follower]`.
     """
     D = len(tail)
     distance = np.full(D, np.inf)

@@ -70,7 +70,7 @@ class GrammarTable(NamedTuple):
 
 
 class Population(NamedTuple):
-    """U different skeletons: entry, state (U, N), nodes (U, W), live tips (U, WT), key, score, copies."""
+    """U different skeletons: entry, state (U, N), nodes (U, W), live tips (U, WT), the rest (U,)."""
 
     entry: NDArray[np.int32]
     state: NDArray[np.int16]
@@ -96,7 +96,7 @@ def is_free(on_path: Words, tip: int, d: int, nodes: Words, u: int) -> bool:
 
     A path out of reach holds all nodes, and is never free.
     """
-    for w in range(nodes.shape[1]):
+    for w in range(nodes.shape[1]):  # noqa: SIM110, numba has no all()
         if on_path[tip, d, w] & nodes[u, w]:
             return False
     return True

@@ -5,7 +5,6 @@ import numpy as np
 from prunus.kernels.compiled import kernel
 from prunus.model.arrays import Floats, Ints
 
-
 FEW = 32
 """Up to this many values, counting the smaller ones is faster than sorting (1.0 -> 0.2 us at 8)."""
 

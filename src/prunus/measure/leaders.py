@@ -11,8 +11,10 @@ from prunus.model import Label, Skeleton
 
 @dataclass(frozen=True)
 class Leader:
-    """One leader, house frame. Metres; `lean` from the vertical, degrees; `spacing` along X from
-    the leader before it, NaN for the first.
+    """One leader in the house frame, metres.
+
+    `row` is its top; `x` the mean along the row; `lean` from the vertical, degrees; `spacing`
+    along X from the leader before it, NaN for the first.
     """
 
     row: int
@@ -26,7 +28,7 @@ class Leader:
 
 def leaders(skeleton: Skeleton) -> list[Leader]:
     """The leaders of a skeleton in the house frame, by where they stand along the row."""
-    carried = {row: 0 for row in range(len(skeleton))}
+    carried = dict.fromkeys(range(len(skeleton)), 0)
     for branch in branches(skeleton, Label.SIDE_BRANCH):
         carried[int(branch.rows[0])] += 1
     found = []

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from prunus.errors import PrunusError
-from prunus.model.arrays import Bytes, Floats, frozen, snapped
+from prunus.model.arrays import Bools, Bytes, Floats, Ints, frozen, snapped
 
 FRAMES: dict[str, Floats] = {
     "z-up": np.eye(3),
@@ -82,7 +82,7 @@ class PointCloud:
         back = RigidMotion(rotation, -middle).inverse()
         return cls(snapped(turned - middle), back, rgb)
 
-    def take(self, rows: ArrayLike) -> PointCloud:
+    def take(self, rows: Ints | Bools) -> PointCloud:
         """The cloud of these rows only, in the same frame."""
         rgb = None if self.rgb is None else self.rgb[rows]
         return PointCloud(self.xyz[rows], self.to_input, rgb)

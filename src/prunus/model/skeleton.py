@@ -127,13 +127,13 @@ class Skeleton:
 
     def edges_with(self, label: Label) -> Bools:
         """Which rows (M,) end an edge of that label (never row 0)."""
-        chosen = self.label == label
+        chosen: Bools = self.label == label
         chosen[0] = False
         return chosen
 
     def with_radius(self, radius: ArrayLike) -> Skeleton:
         """The same skeleton with other radii (M,)."""
-        return replace(self, radius=radius)
+        return replace(self, radius=np.asarray(radius, np.float64))
 
     def moved(self, motion: RigidMotion) -> Skeleton:
         """The same skeleton in another frame."""

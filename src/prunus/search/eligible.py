@@ -35,7 +35,7 @@ def grammar_table() -> GrammarTable:
     return GrammarTable(
         following,
         np.array([number[label, nothing] for label in SEARCHED]),
-        (following >= 0).any(axis=1),
+        np.asarray((following >= 0).any(axis=1)),
         np.array([TIP_LABEL - label for label in SEARCHED]),
     )
 

@@ -1,4 +1,4 @@
-"""Path priors: how well each edge leads to each tip (secs. Determining eligible pairs, Evaluating)."""
+"""Path priors: how well each edge leads to each tip (sec. Determining eligible pairs)."""
 
 from __future__ import annotations
 

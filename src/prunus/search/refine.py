@@ -1,4 +1,4 @@
-"""Beyond the paper: the best skeleton found, improved one edge at a time (see kernels/refine.py)."""
+"""Beyond the paper: the best skeleton found, improved one edge at a time."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ def grow_penalty(vectors: Floats, label: Label, params: Grow) -> Floats:
 
 
 def turn_penalty(before: Floats, after: Floats, params: Turn) -> Floats:
-    """TurnPenalty (E,) of edges (E, 3) after their predecessors of the same label (eq. turnpenalty)."""
+    """TurnPenalty (E,) of edges (E, 3) after predecessors of the same label (eq. turnpenalty)."""
     sizes = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
     angle = np.arccos(np.clip((before * after).sum(axis=1) / sizes, -1, 1))
     return np.asarray(params.c * np.maximum(angle - params.theta, 0) ** params.p)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.model import Floats, PointCloud, Skeleton
+from prunus.model import Bools, Floats, Ints, PointCloud, Skeleton
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Faults:
 
     points: int = 60_000
     smear: tuple[float, float, float] = (0.024, 0.016, 0.018)
-    """Standard deviation along X, Y and Z: a 2 to 3 cm leader looks 8 to 11 cm wide, 5 to 8 deep."""
+    """Standard deviation by axis: a 2 to 3 cm leader looks 8 to 11 cm wide, 5 to 8 deep."""
     gaps_per_metre: float = 0.25
     gap_radius: tuple[float, float] = (0.025, 0.10)
     thin: float = 0.012
@@ -54,7 +54,7 @@ def _facing(rng: np.random.Generator, count: int) -> Floats:
     return np.asarray(normal / np.linalg.norm(normal, axis=1, keepdims=True))
 
 
-def _in_gaps(truth: Skeleton, rows: Floats, rng: np.random.Generator, faults: Faults) -> Floats:
+def _in_gaps(truth: Skeleton, rows: Ints, rng: np.random.Generator, faults: Faults) -> Bools:
     """Which edges of thin wood lie in a patch that the cameras lost."""
     thin = truth.radius[rows] < faults.thin
     total = truth.lengths[rows][thin].sum()

@@ -25,9 +25,7 @@ class EdgeScorer(Protocol):
         """Conf(e) for every candidate edge."""
 
 
-def score_edges(
-    candidates: CandidateGraph, scorer: EdgeScorer, params: Confidence
-) -> ScoredGraph:
+def score_edges(candidates: CandidateGraph, scorer: EdgeScorer, params: Confidence) -> ScoredGraph:
     """The candidates with the confidence that the scorer gives, less the hopeless ones.
 
     A branch with a gap has poor edges, worth crossing for what lies beyond; but an edge that is

@@ -92,7 +92,7 @@ def _is_sideways(vector: Floats, skeleton: Skeleton, row: int, params: Parameter
 
 
 def _longest_cheapest(graph: _FreeGraph, starts: list[Edge]) -> list[Edge]:
-    """The cheapest path to each superpoint of the piece; of these, the one that reaches farthest."""
+    """Of the cheapest paths to each superpoint of the piece, the one that reaches farthest."""
     best: dict[int, tuple[float, list[Edge]]] = {}
     heap: list[tuple[float, Edge, list[Edge]]] = []
     settled = set()
