@@ -6,7 +6,7 @@ import json
 import math
 import tomllib
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
@@ -28,8 +28,8 @@ class _Group(BaseModel):
 class Input(_Group):
     """What is read of the cloud (method.md 1)."""
 
-    points: int | Literal["all"] = _number(
-        50_000, "P", "points", "points drawn at random from the cloud; 'all' keeps every one", ge=1
+    points: Annotated[int, Field(ge=1)] | Literal["all"] = _number(
+        50_000, "P", "points", "points >= 1 drawn at random from the cloud, or 'all'"
     )
 
     @field_validator("points", mode="before")
@@ -187,12 +187,13 @@ def _about(field: Any) -> str:
         for name, sign in (("gt", ">"), ("ge", ">="), ("lt", "<"), ("le", "<="))
         if hasattr(limit, name)
     )
-    return f"{extra['symbol']} [{extra['unit']}] {limits}: {field.description}"
+    parts = [extra["symbol"], f"[{extra['unit']}]", limits]
+    return " ".join(part for part in parts if part) + f": {field.description}"
 
 
 def _first_problem(error: ValidationError) -> str:
     first = error.errors()[0]
-    where = [str(part) for part in first["loc"] if part not in ("int", "literal['all']")]
+    where = [str(part) for part in first["loc"][:2]]
     name = ".".join(where)
     if first["type"] == "extra_forbidden":
         return f"{name}: unknown parameter; expected one of {', '.join(_known(where[:-1]))}"

@@ -70,7 +70,7 @@ class GrammarTable(NamedTuple):
 
 
 class Population(NamedTuple):
-    """U different skeletons: entry, state (U, N), nodes (U, W), live tips (U, WT), the rest (U,)."""
+    """U different skeletons: entry, state (U, N), nodes (U, W), live tips (U, WT), others (U,)."""
 
     entry: NDArray[np.int32]
     state: NDArray[np.int16]

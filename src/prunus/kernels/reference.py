@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -108,7 +109,9 @@ class Orchard:
 
         Settles the cheapest open edge, as Dijkstra; a path never visits a node twice.
         """
-        open_paths = {e: (0.0, (e,)) for e in self.edges if e[1] == tip and e[0] != tip}
+        open_paths: dict[Edge, tuple[float, Path]] = {
+            e: (0.0, (e,)) for e in self.edges if e[1] == tip and e[0] != tip
+        }
         settled: dict[Edge, Path] = {}
         while open_paths:
             edge = min(open_paths, key=lambda e: (open_paths[e][0], e))
@@ -139,9 +142,7 @@ class Orchard:
 
     def potential(self, skeleton: Pairs, edge: Edge, label: int, path: Path) -> float:
         """Potential[S, n_tip](e, l): each edge once, the 2 - Order(l) largest turns dropped."""
-        turns = [
-            self.turn_penalty(after, before) for before, after in zip(path, path[1:], strict=False)
-        ]
+        turns = [self.turn_penalty(after, before) for before, after in pairwise(path)]
         kept = sorted(turns)[: max(0, len(turns) - (2 - label))]
         beyond = sum(self.edge_score(step) for step in path[1:])
         return self.score(skeleton | {(edge, label)}) + beyond - sum(kept)
@@ -154,7 +155,9 @@ class Orchard:
         for k, skeleton in enumerate(population):
             paths = priors[tips[k]]
             pairs = sorted(self.eligible(skeleton, paths))
-            ranks = average_ranks([self.potential(skeleton, e, l, paths[e]) for e, l in pairs])
+            ranks = average_ranks(
+                [self.potential(skeleton, e, label, paths[e]) for e, label in pairs]
+            )
             for pair, rank in zip(pairs, ranks, strict=True):
                 grown = skeleton | {pair}
                 weight[grown] = weight.get(grown, 0.0) + score_rank[k] * rank

@@ -1,0 +1,37 @@
+"""What many tests share: a simulated tree with its scan, and the real scan where there is one."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from prunus.model import PointCloud, Skeleton
+from prunus.simulate import Faults, grow_tree, scan_tree
+
+REAL = Path(__file__).resolve().parents[2] / "shared" / "data" / "ufo_tree0.ply"
+
+
+@cache
+def simulated(seed: int, points: int = 20_000) -> tuple[Skeleton, PointCloud]:
+    """A true tree and its scan."""
+    rng = np.random.default_rng(seed)
+    truth = grow_tree(rng)
+    return truth, scan_tree(truth, rng, Faults(points=points))
+
+
+@pytest.fixture(scope="session")
+def scanned() -> tuple[Skeleton, PointCloud]:
+    return simulated(4)
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(0)
+
+
+@pytest.fixture
+def real_scan() -> Path:
+    if not REAL.exists():
+        pytest.skip("the real scan lies in ../shared, which is absent here")
+    return REAL

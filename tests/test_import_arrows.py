@@ -1,0 +1,63 @@
+"""Arrows go down only: the floor plan, asked of the import statements themselves."""
+
+import ast
+from pathlib import Path
+
+import prunus
+
+HOME = Path(prunus.__file__).parent
+FLOORS = [
+    {"cli"},
+    {"progress", "demo", "convert", "batch"},
+    {"report", "evaluate", "simulate"},
+    {"pipeline", "graphs", "intake"},
+    {"sensing", "search", "stages", "measure", "io"},
+    {"rules", "grammar", "params", "kernels"},
+    {"model"},
+    {"errors"},
+]
+"""From the roof down. A room may use rooms on lower floors, and those named in SAME_FLOOR."""
+
+SAME_FLOOR = {
+    ("cli", "cli"),
+    ("rules", "grammar"),
+    ("stages", "measure"),
+}
+"""Neighbours on one floor that may be used. No side room knows another."""
+
+
+def floor_of(room: str) -> int:
+    return next(number for number, rooms in enumerate(FLOORS) if room in rooms)
+
+
+def imports(path: Path) -> set[str]:
+    """The rooms of prunus that a file imports, wherever in the file."""
+    rooms = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("prunus."):
+            rooms.add((node.module or "").split(".")[1])
+        elif isinstance(node, ast.Import):
+            rooms |= {n.name.split(".")[1] for n in node.names if n.name.startswith("prunus.")}
+    return rooms
+
+
+def room_of(path: Path) -> str:
+    return path.relative_to(HOME).parts[0].removesuffix(".py")
+
+
+def test_every_room_stands_on_a_floor() -> None:
+    rooms = {room_of(path) for path in HOME.rglob("*.py")} - {"__init__"}
+    assert rooms == set().union(*FLOORS)
+
+
+def test_arrows_go_down_only() -> None:
+    wrong = []
+    for path in sorted(HOME.rglob("*.py")):
+        room = room_of(path)
+        if room == "__init__":
+            continue
+        for used in imports(path) - {room}:
+            down = floor_of(used) > floor_of(room)
+            if not down and (room, used) not in SAME_FLOOR:
+                wrong.append(f"{path.relative_to(HOME)} imports {used}")
+    assert wrong == []
