@@ -16,7 +16,7 @@ def test_an_optical_cloud_stands_up(rng: np.random.Generator) -> None:
 
 
 def test_the_way_back_keeps_millimetres_of_utm_coordinates(rng: np.random.Generator) -> None:
-    xyz = rng.uniform(-2, 2, (100, 3)) + [612_345.678, 5_123_456.789, 321.0]
+    xyz = rng.uniform(-2, 2, (100, 3)) + np.array([612_345.678, 5_123_456.789, 321.0])
     cloud = PointCloud.from_xyz(xyz)
     assert np.abs(cloud.xyz).max() < 5
     assert np.abs(cloud.to_input.apply(cloud.xyz) - xyz).max() < 2e-6

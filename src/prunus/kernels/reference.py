@@ -147,17 +147,19 @@ class Orchard:
         beyond = sum(self.edge_score(step) for step in path[1:])
         return self.score(skeleton | {(edge, label)}) + beyond - sum(kept)
 
-    def weights(self, population: list[Pairs], tips: list[int]) -> dict[Pairs, float]:
-        """The weight of every next-generation skeleton; tips[k] is what member k has drawn."""
-        score_rank = average_ranks([self.score(skeleton) for skeleton in population])
-        priors = {tip: self.paths(tip) for tip in set(tips)}
+    def weights(self, population: list[Pairs], tips: list[int | None]) -> dict[Pairs, float]:
+        """The weight of every next-generation skeleton; tips[k] is what member k drew, if any."""
+        score_rank = average_ranks([round(self.score(skeleton), 9) for skeleton in population])
+        priors = {tip: self.paths(tip) for tip in tips if tip is not None}
         weight: dict[Pairs, float] = {}
         for k, skeleton in enumerate(population):
-            paths = priors[tips[k]]
+            tip = tips[k]
+            if tip is None:
+                continue
+            paths = priors[tip]
             pairs = sorted(self.eligible(skeleton, paths))
-            ranks = average_ranks(
-                [self.potential(skeleton, e, label, paths[e]) for e, label in pairs]
-            )
+            potentials = [self.potential(skeleton, e, label, paths[e]) for e, label in pairs]
+            ranks = average_ranks([round(value, 9) for value in potentials])
             for pair, rank in zip(pairs, ranks, strict=True):
                 grown = skeleton | {pair}
                 weight[grown] = weight.get(grown, 0.0) + score_rank[k] * rank
