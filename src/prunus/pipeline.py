@@ -101,7 +101,10 @@ def _timed(seconds: Seconds, stage: str) -> Iterator[None]:
 
 
 def _point(base: ArrayLike) -> Floats:
-    point = np.asarray(base, np.float64)
+    try:
+        point = np.asarray(base, np.float64)
+    except (TypeError, ValueError):
+        point = np.zeros(0)
     if point.shape != (3,) or not np.isfinite(point).all():
         raise PrunusError(f"the base is {base!r}; expected three finite numbers x, y, z")
     return point

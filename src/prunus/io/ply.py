@@ -121,6 +121,9 @@ def parse_rows(
     lines: io.BytesIO, path: Path, columns: int | None = None, delimiter: str | None = None
 ) -> NDArray[np.float64]:
     """Rows of numbers (P, C) from text; PrunusError naming the row otherwise."""
+    if not any(line.split(b"#")[0].strip() for line in lines):
+        raise PrunusError(f"{path}: holds no points; expected rows of numbers")
+    lines.seek(0)
     try:
         values = np.loadtxt(lines, np.float64, delimiter=delimiter, ndmin=2, encoding="latin-1")
     except (ValueError, OverflowError) as error:

@@ -1,0 +1,130 @@
+"""Skeletons to files and back; the schema; files that lie."""
+
+import json
+from pathlib import Path
+
+import jsonschema
+import networkx as nx
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from prunus.errors import PrunusError
+from prunus.io.export import write_graphml, write_ply, write_swc
+from prunus.io.ply import read_ply
+from prunus.io.skeletons import read_record, read_skeleton, schema, write_skeleton
+from prunus.model import Skeleton
+from tests.drawn import tree
+
+SCHEMA = Path(__file__).resolve().parents[2] / "docs" / "skeleton.schema.json"
+
+
+def random_skeleton(seed: int) -> Skeleton:
+    rng = np.random.default_rng(seed)
+    rows = int(rng.integers(1, 20))
+    parent = [-1, *(int(rng.integers(0, row)) for row in range(1, rows))]
+    radius = np.where(rng.random(rows) < 0.5, np.nan, rng.random(rows) + 1e-3)
+    return Skeleton.build(
+        rng.normal(size=(rows, 3)) * 1e3,
+        parent,
+        rng.integers(0, 4, rows),
+        confidence=np.where(rng.random(rows) < 0.5, np.nan, rng.random(rows)),
+        radius=radius,
+        superpoint=rng.integers(-1, 500, rows),
+    )
+
+
+def same(first: Skeleton, second: Skeleton, *columns: str) -> bool:
+    return all(
+        np.array_equal(getattr(first, name), getattr(second, name), equal_nan=True)
+        for name in columns
+    )
+
+
+@settings(deadline=None, max_examples=30)
+@given(seed=st.integers(0, 10_000))
+def test_json_gives_back_every_bit(tmp_path_factory: pytest.TempPathFactory, seed: int) -> None:
+    skeleton = random_skeleton(seed)
+    path = tmp_path_factory.mktemp("json") / "skeleton.json"
+    write_skeleton(path, skeleton, score=1.5, seed=seed)
+    back, record = read_record(path)
+    columns = ("xyz", "parent", "label", "confidence", "radius", "superpoint")
+    assert same(back, skeleton, *columns)
+    assert (record.score, record.seed) == (1.5, seed)
+    jsonschema.validate(json.loads(path.read_text()), json.loads(SCHEMA.read_text()))
+
+
+@settings(deadline=None, max_examples=30)
+@given(seed=st.integers(0, 10_000))
+def test_swc_gives_back_the_tree(tmp_path_factory: pytest.TempPathFactory, seed: int) -> None:
+    skeleton = random_skeleton(seed)
+    path = tmp_path_factory.mktemp("swc") / "skeleton.swc"
+    write_swc(path, skeleton)
+    assert same(read_skeleton(path), skeleton, "xyz", "parent", "label", "radius")
+
+
+def test_the_committed_schema_is_that_of_the_code() -> None:
+    assert SCHEMA.read_text() == schema()
+
+
+def test_ply_holds_coloured_edges_and_named_columns(tmp_path: Path) -> None:
+    skeleton = tree()
+    write_ply(tmp_path / "s.ply", skeleton)
+    tables = read_ply((tmp_path / "s.ply").read_bytes(), tmp_path / "s.ply", ("vertex", "edge"))
+    edges = np.column_stack([tables["edge"]["vertex1"], tables["edge"]["vertex2"]])
+    assert edges.tolist() == skeleton.edges.tolist()
+    assert tables["vertex"]["label"].tolist() == skeleton.label.tolist()
+    assert len(np.unique(tables["edge"][["red", "green", "blue"]])) == 4
+
+
+def test_graphml_opens_in_networkx(tmp_path: Path) -> None:
+    write_graphml(tmp_path / "s.graphml", tree())
+    graph = nx.read_graphml(tmp_path / "s.graphml")
+    assert graph.number_of_nodes() == len(tree())
+    assert graph.nodes["0"]["z"] == 0
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"format": "other"}, "format: "),
+        ({"version": 2}, "version: "),
+        ({"label": ["trunk", "twig"]}, r"label\.1: "),
+        ({"parent": [-1]}, "parent: 1 entries; expected one for each of the 2 nodes"),
+        ({"parent": [-1, 1]}, r"parent\[1\] is 1"),
+        ({"nodes": [[0, 0], [1, 1]]}, r"nodes\.0"),
+        ({"nodes": []}, "nodes: "),
+        ({"colour": "red"}, "colour: Extra inputs"),
+    ],
+)
+def test_a_file_that_lies_is_refused_by_field(tmp_path: Path, change: dict, message: str) -> None:
+    path = tmp_path / "s.json"
+    write_skeleton(path, tree("t\no"))
+    path.write_text(json.dumps(json.loads(path.read_text()) | change))
+    with pytest.raises(PrunusError, match=f"s.json: {message}"):
+        read_skeleton(path)
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ("1 16 0 0 0 0 -1\n2 16 0 0 1 0 -1\n", "2 rows without a parent"),
+        ("1 16 0 0 0 0 -1\n2 16 0 0 1 0 3\n3 16 0 0 2 0 2\n", "2 rows do not hang on the base"),
+        ("1 16 0 0 0 0 -1\n1 16 0 0 1 0 1\n", "an id stands twice"),
+        ("1 5 0 0 0 0 -1\n", "type 5 is no label"),
+        ("1 16 0 0 0 0\n", "rows hold 6 numbers; expected 7"),
+        ("1 16 0 0 nan 0 -1\n", "a skeleton's nodes are finite; found NaN or infinity"),
+    ],
+)
+def test_a_wrong_swc_is_refused(tmp_path: Path, rows: str, message: str) -> None:
+    (tmp_path / "s.swc").write_text(rows)
+    with pytest.raises(PrunusError, match=f"s.swc: {message}"):
+        read_skeleton(tmp_path / "s.swc")
+
+
+def test_swc_rows_may_stand_in_any_order(tmp_path: Path) -> None:
+    (tmp_path / "s.swc").write_text("7 18 0 0 2 0.01 3\n3 16 0 0 1 0 9\n9 16 0 0 0 0 -1\n")
+    skeleton = read_skeleton(tmp_path / "s.swc")
+    assert skeleton.xyz[:, 2].tolist() == [0, 1, 2]
+    assert skeleton.parent.tolist() == [-1, 0, 1]

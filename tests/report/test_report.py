@@ -1,0 +1,55 @@
+"""The report: one file, no network, with all that it promises."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from prunus.pipeline import Result, skeletonize
+from prunus.report import report_page
+from tests.conftest import simulated
+
+
+@pytest.fixture(scope="module")
+def found() -> Result:
+    truth, cloud = simulated(2)
+    return skeletonize(cloud, truth.xyz[0])
+
+
+@pytest.fixture(scope="module")
+def page(found: Result) -> str:
+    return report_page(found, "tree <2>", ["frame z-up: a note"])
+
+
+def test_the_page_asks_nothing_of_the_network(page: str) -> None:
+    outside = re.sub(r"<script>/\*\*.*?</script>", "", page, count=1, flags=re.DOTALL)
+    assert len(outside) < len(page) / 2, "the library is inside"
+    assert not re.search(r"(src|href)=", outside)
+
+
+def test_names_are_escaped_and_notes_and_warnings_shown(page: str, found: Result) -> None:
+    assert "tree &lt;2&gt;" in page and "tree <2>" not in page
+    assert "frame z-up: a note" in page
+    assert all(warning in page for warning in found.warnings)
+
+
+def test_the_scene_has_a_switch_for_every_piece_of_evidence(page: str) -> None:
+    scene = re.search(r'newPlot\("scene", (\[.*?\]), \{"margin"', page)
+    assert scene is not None
+    traces = json.loads(scene.group(1))
+    names = [trace["name"] for trace in traces]
+    assert names[:7] == ["cloud", "trunk", "support", "leader", "side branch", "base", "tips"]
+    hidden = {trace["name"] for trace in traces if trace["visible"] == "legendonly"}
+    assert "superpoints" in hidden
+    assert sum(name.startswith("candidates, confidence") for name in hidden) == 3
+
+
+def test_tables_hold_leaders_times_and_parameters(page: str, found: Result) -> None:
+    for text in ("Leaders, from left to right", "Time by stage", "r_super = 0.1", "Score by"):
+        assert text in page
+    assert f"Score {found.score:.2f}" in page
+
+
+def test_a_page_is_a_few_megabytes(page: str, tmp_path: Path) -> None:
+    assert 3e6 < len(page) < 9e6

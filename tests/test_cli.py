@@ -1,0 +1,229 @@
+"""The command line as a person and a script use it: outputs, messages, exit status, nothing half."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner, Result
+
+from prunus.cli import app
+from prunus.io.clouds import write_cloud
+from prunus.io.skeletons import read_record, read_skeleton
+from prunus.rules import offenders
+from tests.conftest import simulated
+
+OUTPUTS = {"skeleton.json", "skeleton.swc", "skeleton.ply", "params.toml", "report.html"}
+FAST = ["--no-report", "--frame", "z-up"]
+
+
+def prunus(*words: object) -> Result:
+    result = CliRunner().invoke(app, [str(word) for word in words])
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result
+
+
+@pytest.fixture
+def scan(tmp_path: Path) -> Path:
+    """A small simulated scan as a PLY file; its base is the origin."""
+    _, cloud = simulated(2)
+    write_cloud(tmp_path / "tree.ply", cloud.to_input.apply(cloud.xyz))
+    return tmp_path / "tree.ply"
+
+
+@pytest.fixture
+def quick(tmp_path: Path) -> Path:
+    """Parameters that make the search quick."""
+    (tmp_path / "quick.toml").write_text("[search]\nK = 20\n")
+    return tmp_path / "quick.toml"
+
+
+def test_one_tree_gives_all_its_files(scan: Path, quick: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    base = ["--base", "0", "0", "0"]
+    done = prunus("skeletonize", scan, "-o", out, *base, "--params", quick)
+    assert done.exit_code == 0, done.output
+    assert {path.name for path in out.iterdir()} == OUTPUTS
+    skeleton, record = read_record(out / "skeleton.json")
+    assert offenders(skeleton) == {}
+    assert record.input is not None and record.input.file == "tree.ply"
+    assert record.params is not None and record.params["search"]["K"] == 20
+    assert np.linalg.norm(skeleton.xyz[0]) < 0.15
+    assert "leaders" in done.stdout
+
+
+def test_the_same_run_gives_the_same_bytes(scan: Path, quick: Path, tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        assert prunus("skeletonize", scan, "-o", tmp_path / name, "--params", quick).exit_code == 0
+    for name in OUTPUTS - {"report.html"}:
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
+
+
+def test_json_prints_one_line_a_tree_and_nothing_else(
+    scan: Path, quick: Path, tmp_path: Path
+) -> None:
+    bad = tmp_path / "bad.xyz"
+    bad.write_text("1 2\n")
+    done = prunus(
+        "skeletonize", scan, bad, "-o", tmp_path / "out", "--json", "--params", quick, *FAST
+    )
+    assert done.exit_code == 1
+    records = {Path(r["file"]).name: r for r in map(json.loads, done.stdout.splitlines())}
+    good, failed = records["tree.ply"], records["bad.xyz"]
+    assert set(good) == set(failed) == {
+        "file", "ok", "error", "skeleton", "score", "points", "superpoints", "edges", "tips",
+        "labels", "leaders", "side_branches", "cpu_s", "wall_s", "warnings",
+    }  # fmt: skip
+    assert good["ok"] and good["error"] is None
+    assert good["cpu_s"]["total"] == pytest.approx(
+        sum(s for stage, s in good["cpu_s"].items() if stage != "total"), abs=1e-3
+    )
+    assert not failed["ok"] and "rows hold 2 numbers" in failed["error"]
+    assert read_skeleton(good["skeleton"]) is not None
+    assert (tmp_path / "out" / "tree" / "skeleton.json").exists()
+
+
+def test_a_folder_goes_on_past_a_bad_file_and_says_so(
+    scan: Path, quick: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "empty.ply").write_bytes(b"")
+    done = prunus("skeletonize", tmp_path, "-o", tmp_path / "out", "--params", quick, *FAST)
+    assert done.exit_code == 1
+    assert "1 of 2 failed" in done.stderr
+    assert "empty.ply: the file is empty" in done.stderr
+    assert (tmp_path / "out" / "tree" / "skeleton.json").exists()
+
+
+def test_two_jobs_do_the_same(scan: Path, quick: Path, tmp_path: Path) -> None:
+    (tmp_path / "again.ply").write_bytes(scan.read_bytes())
+    words = ["skeletonize", scan, tmp_path / "again.ply", "--params", quick, *FAST]
+    assert prunus(*words, "-o", tmp_path / "one").exit_code == 0
+    assert prunus(*words, "-o", tmp_path / "two", "--jobs", 2).exit_code == 0
+    for name in ("tree", "again"):
+        one, two = (tmp_path / jobs / name / "skeleton.swc" for jobs in ("one", "two"))
+        assert one.read_bytes() == two.read_bytes()
+
+
+def test_inputs_of_one_name_are_refused_not_overwritten(
+    scan: Path, quick: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "sub").mkdir()
+    twin = tmp_path / "sub" / "tree.ply"
+    twin.write_bytes(scan.read_bytes())
+    done = prunus("skeletonize", scan, twin, "-o", tmp_path / "out", "--params", quick, *FAST)
+    assert done.exit_code == 1
+    assert "both would be written to" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "message"),
+    [
+        (["none.ply"], 1, "none.ply: cannot be read (No such file"),
+        (["tree.ply", "--base", "9", "9", "9"], 1, "from the nearest part of the tree"),
+        (["tree.ply", "--params", "typo.toml"], 2, "search.k: unknown parameter"),
+        (["tree.ply", "--params", "none.toml"], 2, "none.toml: cannot be read"),
+        (["tree.ply", "--points", "few"], 2, "--points: 'few'; expected a number or 'all'"),
+        (["tree.ply", "--points", "0"], 2, "input.points"),
+        (["tree.ply", "--frame", "y-up"], 2, "Invalid value for '--frame'"),
+        (["tree.ply", "--seed", "-1"], 2, "Invalid value for '--seed'"),
+        (["tree.ply", "--nonsense"], 2, "No such option"),
+        (["hollow"], 1, "no point cloud in this folder"),
+        (["tree.ply", "-o", "typo.toml"], 1, "typo.toml: is a file; expected a folder"),
+        (["pieces.xyz", "--base", "0", "0", "0"], 1, "no tips of leaders were found"),
+    ],
+)
+def test_bad_input_gets_one_clear_line_and_a_status(
+    scan: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    words: list[str], status: int, message: str,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "typo.toml").write_text("[search]\nk = 5\n")
+    (tmp_path / "hollow").mkdir()
+    flat = np.random.default_rng(0).uniform(0, 0.05, (400, 3))
+    np.savetxt(tmp_path / "pieces.xyz", np.concatenate([flat, flat + [3, 0, 0]]))
+    done = prunus("skeletonize", *words)
+    assert done.exit_code == status, done.output
+    assert message in done.stderr.replace("\n", " ")
+    assert "Traceback" not in done.output
+    assert not list(tmp_path.rglob("skeleton.json"))
+
+
+def test_a_full_disk_leaves_nothing_half_written(
+    scan: Path, quick: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import errno
+    import os
+
+    def full(descriptor: int, mode: str) -> None:
+        os.close(descriptor)
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    out = tmp_path / "out"
+    monkeypatch.setattr("prunus.io.safely.os.fdopen", full)
+    done = prunus("skeletonize", scan, "-o", out, "--params", quick, *FAST)
+    assert done.exit_code == 1
+    assert "cannot be written (No space left on device)" in done.stderr
+    assert list(out.iterdir()) == []
+
+
+def test_an_unwritable_folder_is_named(scan: Path, quick: Path) -> None:
+    done = prunus("skeletonize", scan, "-o", "/proc/nowhere", "--params", quick, *FAST)
+    assert done.exit_code == 1
+    assert "/proc/nowhere" in done.stderr and "cannot be written" in done.stderr
+
+
+def test_the_demo_shows_what_was_found(tmp_path: Path) -> None:
+    done = prunus("demo", "-o", tmp_path / "demo", "--seed", 3)
+    assert done.exit_code == 0, done.output
+    assert {path.name for path in (tmp_path / "demo").iterdir()} == OUTPUTS | {
+        "scan.ply", "truth.json",
+    }  # fmt: skip
+    assert "against the truth" in done.stdout
+
+
+@pytest.mark.parametrize("ending", [".swc", ".ply", ".graphml", ".json"])
+def test_skeletons_convert(tmp_path: Path, ending: str) -> None:
+    from prunus.io.skeletons import write_skeleton
+    from tests.drawn import tree
+
+    write_skeleton(tmp_path / "s.json", tree(), score=2.5)
+    done = prunus("convert", tmp_path / "s.json", tmp_path / f"t{ending}")
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / f"t{ending}").stat().st_size > 100
+    if ending == ".json":
+        assert (tmp_path / "t.json").read_bytes() == (tmp_path / "s.json").read_bytes()
+
+
+def test_clouds_convert_and_unknown_kinds_do_not(scan: Path, tmp_path: Path) -> None:
+    assert prunus("convert", scan, tmp_path / "t.xyz").exit_code == 0
+    assert len((tmp_path / "t.xyz").read_text().splitlines()) == 20_000
+    for source, target, message in [
+        (scan, "t.obj", "clouds are not written as '.obj'"),
+        ("none.json", "t.swc", "none.json: cannot be read"),
+        ("none.swc", "t.doc", "skeletons are not written as '.doc'"),
+    ]:
+        done = prunus("convert", source, tmp_path / str(target))
+        assert done.exit_code == 2
+        assert message in done.stderr
+
+
+def test_version_and_help_answer() -> None:
+    import prunus as package
+
+    assert prunus("--version").stdout == f"prunus {package.__version__}\n"
+    for words in (["--help"], ["skeletonize", "-h"], ["convert", "-h"], ["demo", "-h"]):
+        assert "prunus" in prunus(*words).stdout
+
+
+def test_help_loads_nothing_heavy() -> None:
+    code = (
+        "import sys; sys.argv = ['prunus', '--help']\n"
+        "from prunus.cli import main\n"
+        "try: main()\n"
+        "except SystemExit: pass\n"
+        "print('heavy:', sorted({'numpy', 'numba', 'pydantic', 'plotly'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "heavy: []" in done.stdout

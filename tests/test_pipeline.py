@@ -1,0 +1,74 @@
+"""Golden runs with tolerances: trees that the chain must find."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from prunus.errors import PrunusError
+from prunus.evaluate.curves import curve_measures
+from prunus.intake import open_scan
+from prunus.measure import leaders
+from prunus.model import Label, PointCloud, Skeleton
+from prunus.pipeline import skeletonize
+
+
+def test_most_of_a_simulated_tree_is_found(scanned: tuple[Skeleton, PointCloud]) -> None:
+    truth, cloud = scanned
+    measures = curve_measures(skeletonize(cloud, truth.xyz[0]).skeleton, truth)
+    assert measures["support_recall"] > 0.8
+    assert measures["leader_recall"] > 0.7
+    assert measures["geometry_precision"] > 0.9
+
+
+def test_a_base_is_found_where_none_is_given(scanned: tuple[Skeleton, PointCloud]) -> None:
+    truth, cloud = scanned
+    found = skeletonize(cloud)
+    assert "no base was given" in found.warnings[0]
+    assert np.linalg.norm(found.skeleton.xyz[0] - truth.xyz[0]) < 0.2
+
+
+def test_the_front_tree_of_the_real_scan_is_recognised(real_scan: Path) -> None:
+    """One long support to the left of the trunk, and leaders where a person sees them."""
+    cloud = open_scan(real_scan, "optical").cloud
+    found = skeletonize(cloud, (1.40, 0.90, 1.42)).skeleton
+    support = found.xyz[found.edges_with(Label.SUPPORT)]
+    assert support[:, 0].min() < 0.1
+    assert support[:, 0].max() > 1.1
+    assert (support[:, 1] > 0.3).all()
+    assert (support[:, 2] < 1.6).all(), "the support went to the row behind"
+    tall = [leader for leader in leaders(skeletonize(cloud, (1.40, 0.90, 1.42)).in_house)]
+    assert sum(leader.height > 0.8 for leader in tall) >= 3
+    leader_depth = found.xyz[found.edges_with(Label.LEADER), 2]
+    assert np.quantile(leader_depth, 0.9) < 1.6
+
+
+def test_the_frame_of_the_real_scan_is_found(real_scan: Path) -> None:
+    scan = open_scan(real_scan)
+    assert scan.frame == "optical"
+    assert "most wood runs along Y" in scan.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("points", "message"),
+    [
+        (np.zeros((1, 3)), "no ball of 0.1 m holds 8 points"),
+        (np.zeros((500, 3)), "no tips of leaders were found"),
+        (np.linspace(0, 1, 3000).reshape(1000, 3) * [1, 0, 0], "no tips of leaders were found"),
+    ],
+)
+def test_clouds_without_a_tree_are_refused(points: np.ndarray, message: str) -> None:
+    with pytest.raises(PrunusError, match=message):
+        skeletonize(points)
+
+
+def test_points_on_an_upright_line_are_a_bare_trunk_or_leader() -> None:
+    line = np.column_stack([np.zeros(3000), np.zeros(3000), np.linspace(0, 2, 3000)])
+    found = skeletonize(line, (0, 0, 0))
+    assert found.skeleton.xyz[:, 2].max() > 1.8
+
+
+@pytest.mark.parametrize("base", [(1, 2), "here", (0, 0, np.nan)])
+def test_a_base_that_is_no_point_is_refused(base: object) -> None:
+    with pytest.raises(PrunusError, match="the base is"):
+        skeletonize(np.zeros((10, 3)), base)
