@@ -1,4 +1,4 @@
-"""The command line as a person and a script use it: outputs, messages, exit status, nothing half."""
+"""The command line as a person and a script use it: outputs, messages, exit status."""
 
 import json
 import subprocess
@@ -142,7 +142,7 @@ def test_bad_input_gets_one_clear_line_and_a_status(
     (tmp_path / "typo.toml").write_text("[search]\nk = 5\n")
     (tmp_path / "hollow").mkdir()
     flat = np.random.default_rng(0).uniform(0, 0.05, (400, 3))
-    np.savetxt(tmp_path / "pieces.xyz", np.concatenate([flat, flat + [3, 0, 0]]))
+    np.savetxt(tmp_path / "pieces.xyz", np.concatenate([flat, flat + np.array([3, 0, 0])]))
     done = prunus("skeletonize", *words)
     assert done.exit_code == status, done.output
     assert message in done.stderr.replace("\n", " ")

@@ -47,7 +47,7 @@ def test_superpoints_lie_in_the_wood_and_noise_gets_none(rng: np.random.Generato
 def test_a_cloud_too_thin_for_any_superpoint_is_refused(rng: np.random.Generator) -> None:
     cloud = PointCloud.from_xyz(np.arange(30.0).reshape(10, 3))
     with pytest.raises(
-        PrunusError, match="no ball of 0.1 m holds 8 points .the fullest holds 1 of"
+        PrunusError, match=r"no ball of 0.1 m holds 8 points \(the fullest holds 1 of"
     ):
         find_superpoints(cloud, PARAMS.superpoints, rng)
 
