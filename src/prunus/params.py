@@ -99,10 +99,10 @@ class Search(_Group):
 
 
 class Leaders(_Group):
-    """Leaders that end at no tip (beyond the paper)."""
+    """Stubs (beyond the paper)."""
 
     min_length: float = _number(
-        0.35, "-", "m", "shorter ones that end at no tip are dropped; 0 keeps all", ge=0, le=10
+        0.35, "-", "m", "shorter leaders are dropped; 0 keeps all", ge=0, le=10
     )
 
 

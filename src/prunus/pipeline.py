@@ -83,7 +83,7 @@ def skeletonize(
     with _timed(seconds, "search"):
         found = search(seeded, params, rng)
     with _timed(seconds, "stubs"):
-        framework = drop_stubs(found.skeleton, seeded.tips, params.leaders.min_length)
+        framework = drop_stubs(found.skeleton, params.leaders.min_length)
     with _timed(seconds, "side branches"):
         skeleton = find_side_branches(framework, seeded, params)
     with _timed(seconds, "measures"):

@@ -84,20 +84,13 @@ def test_the_turn_limit_ends_a_branch() -> None:
     assert found("l   \nl bb\nlbb \nl   \ns   \nt   \no   ") == 4
 
 
-def test_stubs_are_dropped_and_paths_to_tips_kept() -> None:
-    framework = tree("l   \nl   \nl  l\nl  l\nssss\nt   \no   ")
-    rows = np.arange(len(framework))
-    skeleton = Skeleton.build(
-        framework.xyz, framework.parent, framework.label, superpoint=rows + 50
-    )
-    ends = np.flatnonzero(~np.isin(rows, framework.parent))
-    tall, short = sorted(ends, key=lambda row: framework.xyz[row, 0])
-    at_tall = drop_stubs(skeleton, np.array([tall + 50]), 0.35)
-    at_both = drop_stubs(skeleton, np.array([tall + 50, short + 50]), 0.35)
-    assert len(at_tall) == len(skeleton) - 2
-    assert offenders(at_tall) == {}
-    assert len(at_both) == len(skeleton)
-    assert len(drop_stubs(skeleton, np.array([], np.int64), 0.0)) == len(skeleton)
+def test_short_leaders_are_dropped_and_long_ones_kept() -> None:
+    skeleton = tree("l   \nl   \nl  l\nl  l\nssss\nt   \no   ")
+    cleaned = drop_stubs(skeleton, 0.35)
+    assert len(cleaned) == len(skeleton) - 2
+    assert offenders(cleaned) == {}
+    assert len(drop_stubs(skeleton, 0.15)) == len(skeleton)
+    assert len(drop_stubs(skeleton, 0.0)) == len(skeleton)
 
 
 def test_every_letter_has_a_label() -> None:

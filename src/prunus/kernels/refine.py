@@ -128,6 +128,15 @@ def hangs_on(node: int, ancestor: int, into: Ints, tail: Ints) -> bool:
 
 
 @kernel
+def leads_nowhere(worth: Floats, node: int) -> bool:
+    """Whether no branch above the node may end: then no place for it gains anything."""
+    for label in range(worth.shape[1]):  # noqa: SIM110, numba has no all()
+        if worth[node, label] > NEVER / 2:
+            return False
+    return True
+
+
+@kernel
 def climb(
     into: Ints,
     order: Ints,
@@ -155,7 +164,9 @@ def climb(
         for d in range(len(tail)):
             node, onto = head[d], tail[d]
             old = into[node]
-            if old < 0 or old == d or into[onto] == OUTSIDE or hangs_on(onto, node, into, tail):
+            if old < 0 or old == d or into[onto] == OUTSIDE or leads_nowhere(worth, node):
+                continue
+            if hangs_on(onto, node, into, tail):
                 continue
             total = worth[base, 0]
             into[node] = d

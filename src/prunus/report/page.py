@@ -33,7 +33,11 @@ LAYOUT = {
     "legend": {"x": 0, "y": 1, "bgcolor": "rgba(255,255,255,0.75)", "itemsizing": "constant"},
     "scene": {
         "aspectmode": "data",
-        "camera": {"eye": {"x": 0.15, "y": -1.55, "z": 0.15}, "up": {"x": 0, "y": 0, "z": 1}},
+        "camera": {
+            "eye": {"x": 0.18, "y": -0.78, "z": 0.1},
+            "up": {"x": 0, "y": 0, "z": 1},
+            "projection": {"type": "orthographic"},
+        },
         "xaxis": {**AXIS, "title": {"text": "X along the row [m]"}},
         "yaxis": {**AXIS, "title": {"text": "Y depth [m]"}},
         "zaxis": {**AXIS, "title": {"text": "Z up [m]"}},

@@ -1,0 +1,211 @@
+"""What is measured. Each case yields rows: name, value, unit."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from bench.graphs import PARAMS, graph_of, row_graph, tree_scan
+from prunus.evaluate.curves import curve_measures
+from prunus.io.clouds import write_cloud
+from prunus.kernels.frames import edge_images
+from prunus.kernels.neighbours import cover, within
+from prunus.pipeline import skeletonize
+from prunus.search import search
+from prunus.search.potential import path_priors
+from prunus.search.score import graph_table
+
+Row = tuple[str, float, str]
+RUNS = 7
+
+
+def cpu(work: Callable[[], object], runs: int = RUNS) -> float:
+    """Median CPU seconds of some runs, after one to warm up."""
+    work()
+    spent = []
+    for _ in range(runs):
+        start = time.process_time()
+        work()
+        spent.append(time.process_time() - start)
+    return statistics.median(spent)
+
+
+def kernels() -> Iterator[Row]:
+    """Each kernel on the data of one tree of 50 000 points."""
+    graph = graph_of(101)
+    under = graph.superpoints
+    xyz = under.cloud.xyz
+    order = np.random.default_rng(0).permutation(len(xyz))
+    yield "kernel cover", cpu(lambda: cover(xyz, order, under.radius)), "s"
+    yield "kernel within", cpu(lambda: within(xyz, under.xyz, under.radius)), "s"
+    images = cpu(
+        lambda: edge_images(xyz, under.xyz, under.start, under.members, graph.edges, under.radius)
+    )
+    yield "kernel edge_images", images, "s"
+    table, score, cost = graph_table(graph, PARAMS, np.random.default_rng(0))
+    yield (
+        "kernel turn_penalties",
+        cpu(lambda: graph_table(graph, PARAMS, np.random.default_rng(0))),
+        "s",
+    )
+    paths = cpu(lambda: path_priors(table, score, cost, graph.base, graph.tips))
+    yield "kernel tip_paths", paths, "s"
+
+
+def searches() -> Iterator[Row]:
+    """The search on graphs with two edges a superpoint; growth with both sizes."""
+    target = row_graph(250)
+    seeds = iter(range(1000))
+    yield (
+        f"search K=500 N=250 E={len(target.edges)} T={len(target.tips)}",
+        cpu(lambda: search(target, PARAMS, np.random.default_rng(next(seeds)))),
+        "s",
+    )
+    plain = PARAMS.changed("search", refine=False)
+    yield (
+        "search, without refining",
+        cpu(lambda: search(target, plain, np.random.default_rng(0))),
+        "s",
+    )
+    for nodes in (125, 250, 500, 1000, 2000):
+        graph = row_graph(nodes)
+        spent = cpu(lambda g=graph: search(g, PARAMS, np.random.default_rng(0)), 3)
+        yield f"search K=500 N={nodes} T={len(graph.tips)}", spent, "s"
+    for K in (100, 500, 1000, 2500, 5000, 10_000):
+        params = PARAMS.changed("search", K=K)
+        spent = cpu(lambda p=params: search(target, p, np.random.default_rng(0)), 3)
+        yield f"search K={K} N=250", spent, "s"
+
+
+def chain() -> Iterator[Row]:
+    """From points in memory to a skeleton, and from a PLY file to all outputs but the report."""
+    for points in (20_000, 50_000, 300_000, 3_000_000):
+        truth, xyz = tree_scan(101, points)
+        spent = cpu(lambda x=xyz, t=truth: skeletonize(x, t.xyz[0]), 5)
+        yield f"chain {points:,} points", spent, "s"
+    for points in (50_000, 300_000, 3_000_000):
+        yield from _file(points)
+
+
+def _file(points: int) -> Iterator[Row]:
+    """A file read, skeletonized and written in a process of its own, which measures itself."""
+    truth, xyz = tree_scan(101, points)
+    code = (
+        "import sys, json\n"
+        "from pathlib import Path\n"
+        "from prunus.batch import Options, Task, do\n"
+        "path, base = Path(sys.argv[1]), tuple(json.loads(sys.argv[2]))\n"
+        "task = Task(path, path.parent / 'out')\n"
+        "options = Options(base, 'z-up', report=False)\n"
+        "spent = [do(task, options)['cpu_s']['total'] for _ in range(4)]\n"
+        "status = Path('/proc/self/status').read_text()\n"
+        "peak = int(status.split('VmHWM:')[1].split()[0]) / 1024\n"
+        "print(json.dumps([sorted(spent[1:])[1], peak]))"
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "tree.ply"
+        write_cloud(path, xyz)
+        base = json.dumps(truth.xyz[0].tolist())
+        done = subprocess.run(
+            [sys.executable, "-c", code, path, base], capture_output=True, text=True, check=True
+        )
+        spent, peak = json.loads(done.stdout)
+    yield f"file to skeleton.json, {points:,} points", spent, "s"
+    yield f"peak memory, {points:,} points", peak, "MB"
+
+
+def cold() -> Iterator[Row]:
+    """The command line from a cold start, and the very first run, which compiles."""
+    program = Path(sys.executable).parent / "prunus"
+    yield "prunus --help", _child([program, "--help"]), "s"
+    truth, xyz = tree_scan(101)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "tree.ply"
+        write_cloud(path, xyz)
+        base = [str(value) for value in truth.xyz[0].tolist()]
+        words = [program, "skeletonize", path, "-o", Path(folder) / "out", "--base", *base]
+        _child(words)
+        yield "prunus skeletonize, kernels cached", _child(words), "s"
+        empty = os.environ | {"PRUNUS_CACHE_DIR": str(Path(folder) / "cache")}
+        yield "prunus skeletonize, the very first run", _child(words, empty, 1), "s"
+
+
+def _child(words: list[object], environment: dict[str, str] | None = None, runs: int = 5) -> float:
+    spent = []
+    for _ in range(runs):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run(
+            [str(word) for word in words], env=environment, capture_output=True, check=True
+        )
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    return statistics.median(spent)
+
+
+def quality() -> Iterator[Row]:
+    """Mean score of five seeds at K = 500 against K = 5000, refined and as in the paper."""
+    for refine in (True, False):
+        ratios = []
+        for seed in range(100, 106):
+            means = []
+            for K in (500, 5000):
+                params = PARAMS.changed("search", K=K, refine=refine)
+                scores = [
+                    search(graph_of(seed), params, np.random.default_rng(s)).score for s in range(5)
+                ]
+                means.append(statistics.mean(scores))
+            ratios.append(means[0] / means[1])
+            name = "refined" if refine else "as in the paper"
+            yield f"score K=500 / K=5000, {name}, tree {seed}", ratios[-1], "ratio"
+        yield f"score K=500 / K=5000, {name}, mean", statistics.mean(ratios), "ratio"
+
+
+def optimum() -> Iterator[Row]:
+    """Share of the exhaustive optimum on 30 random graphs: 8 nodes, 11 edges, 7 tips."""
+    from tests.search.graphs import orchard, random_graph
+
+    graphs = [random_graph(seed, nodes=8, edges=11, tips=7) for seed in range(30)]
+    best = [orchard(graph, PARAMS).best()[1] for graph in graphs]
+    for refine in (True, False):
+        for K in (500, 5000):
+            params = PARAMS.changed("search", K=K, refine=refine)
+            shares = [
+                search(graph, params, np.random.default_rng(0)).score / top
+                for graph, top in zip(graphs, best, strict=True)
+                if top > 0
+            ]
+            name = f"optimum reached, K={K}, {'refined' if refine else 'as in the paper'}"
+            yield f"{name}, mean", statistics.mean(shares), "ratio"
+            yield f"{name}, worst", min(shares), "ratio"
+
+
+def accuracy() -> Iterator[Row]:
+    """Curve measures on ten simulated trees with the hand-made scorer."""
+    found = []
+    for seed in range(200, 210):
+        truth, xyz = tree_scan(seed)
+        found.append(curve_measures(skeletonize(xyz, truth.xyz[0]).skeleton, truth))
+    for name in found[0]:
+        if not name.endswith("_f1"):
+            yield f"accuracy {name}", float(np.nanmean([m[name] for m in found])), "ratio"
+
+
+CASES: dict[str, Callable[[], Iterator[Row]]] = {
+    "kernels": kernels,
+    "search": searches,
+    "chain": chain,
+    "cold": cold,
+    "quality": quality,
+    "optimum": optimum,
+    "accuracy": accuracy,
+}
