@@ -6,9 +6,11 @@ from functools import cache
 
 import numpy as np
 
+from prunus.kernels.forest import spanning_forest
 from prunus.model import (
     CandidateGraph,
     Floats,
+    Ints,
     PointCloud,
     ScoredGraph,
     SeededGraph,
@@ -23,8 +25,8 @@ from prunus.stages.seeds import find_seeds
 from prunus.stages.superpoints import find_superpoints
 
 PARAMS = Parameters()
-SPACING = 1.5
-"""Distance of the trees of a row, metres: near enough to touch."""
+SPACING = 1.2
+"""Distance of the trees of a row, metres: near enough to grow into each other."""
 
 
 @cache
@@ -48,29 +50,54 @@ def graph_of(seed: int) -> SeededGraph:
 
 @cache
 def row_graph(nodes: int, edges_per_node: float = 2.0, seed: int = 100) -> SeededGraph:
-    """A graph of exactly so many superpoints and edges: the left end of a row of trees.
+    """A connected graph of exactly so many superpoints and edges: the near end of a row of trees.
 
-    The most confident candidates are kept. Tips are found as in the chain.
+    The superpoints are those nearest to the base of the first tree along candidate edges. Kept are
+    a spanning forest of the most confident edges, and the most confident of the rest. Tips are
+    found as in the chain.
     """
-    trees = 1 + nodes // 150
-    scans = [tree_scan(seed + k, 30_000)[1] + [k * SPACING, 0, 0] for k in range(trees)]
-    scored = _scored(np.concatenate(scans), np.random.default_rng(seed))
+    trees = 2 + nodes // 150
+    scans = [tree_scan(seed + k, 30_000) for k in range(trees)]
+    points = [xyz + np.array([k * SPACING, 0, 0]) for k, (_, xyz) in enumerate(scans)]
+    scored = _scored(np.concatenate(points), np.random.default_rng(seed), floor=0.0)
     under = scored.candidates.superpoints
-    kept = np.sort(np.argsort(under.xyz[:, 0], kind="stable")[:nodes])
-    assert len(kept) == nodes, "the row is too short for that many superpoints"
+    foot = under.cloud.to_input.inverse().apply(scans[0][0].xyz[0])
+    base = int(np.linalg.norm(under.xyz - foot, axis=1).argmin())
+    kept = np.sort(_nearest(scored, base, nodes))
     row_of = np.full(len(under), -1)
     row_of[kept] = np.arange(nodes)
     inside = np.flatnonzero((row_of[scored.edges] >= 0).all(axis=1))
     best = inside[np.argsort(-scored.confidence[inside], kind="stable")]
-    chosen = np.sort(best[: round(edges_per_node * nodes)])
+    tree = spanning_forest(nodes, row_of[scored.edges[best]], np.arange(len(best)))
+    ordered = np.concatenate([best[tree], best[~tree]])
+    chosen = np.sort(ordered[: round(edges_per_node * nodes)])
     cloud = PointCloud(under.xyz[kept], under.cloud.to_input)
     own = Superpoints(cloud, cloud.xyz, np.arange(nodes + 1), np.arange(nodes), under.radius)
     graph = ScoredGraph(
         CandidateGraph(own, row_of[scored.edges[chosen]]), scored.confidence[chosen], "handmade"
     )
-    return find_seeds(graph, PARAMS)[0]
+    return find_seeds(graph, PARAMS, cloud.xyz[row_of[base]])[0]
 
 
-def _scored(points: Floats, rng: np.random.Generator) -> ScoredGraph:
+def _nearest(scored: ScoredGraph, base: int, count: int) -> Ints:
+    """The first nodes met from the base, edge by edge."""
+    neighbours: dict[int, list[int]] = {}
+    for i, j in scored.edges.tolist():
+        neighbours.setdefault(i, []).append(j)
+        neighbours.setdefault(j, []).append(i)
+    met = {base: None}
+    for node in (order := [base]):
+        for other in neighbours.get(node, []):
+            if other not in met:
+                met[other] = None
+                order.append(other)
+    assert len(order) >= count, f"only {len(order)} superpoints hang together"
+    return np.array(order[:count])
+
+
+def _scored(
+    points: Floats, rng: np.random.Generator, floor: float = PARAMS.confidence.floor
+) -> ScoredGraph:
     superpoints = find_superpoints(PointCloud.from_xyz(points), PARAMS.superpoints, rng)
-    return score_edges(find_candidates(superpoints), HandmadeScorer(), PARAMS.confidence)
+    confidence = PARAMS.changed("confidence", floor=floor).confidence
+    return score_edges(find_candidates(superpoints), HandmadeScorer(), confidence)

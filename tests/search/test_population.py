@@ -40,7 +40,7 @@ class Steps:
         self.graph, score, cost = graph_table(seeded, PARAMS, self.rng)
         self.priors = path_priors(self.graph, score, cost, seeded.base, seeded.tips)
         self.grammar = grammar_table()
-        self.population = _bare(seeded, K)
+        self.population = _bare(seeded, self.graph, K)
         for _ in range(iterations):
             _, proposals, stands, weight, live = self.step()
             if len(weight) == 0:
@@ -118,12 +118,12 @@ def test_weights_are_those_of_the_slow_twin(seed: int, iterations: int) -> None:
     fast, slow = Steps(seeded, iterations, K=12), orchard(seeded, PARAMS)
     before = fast.population
     rows = [u for u in range(len(before.score)) for _ in range(before.copies[u])]
-    live = before.live.copy()
+    alive = [tips_alive(words, len(seeded.tips)) for words in before.live]
     draws, proposals, stands, weight, _ = fast.step()
     priors = [slow.paths(int(tip)) for tip in seeded.tips]
     skeletons = [fast.pairs(u) for u in rows]
     drawn = [
-        drawn_tip(live[u], draw, skeleton, priors, slow)
+        drawn_tip(alive[u], draw, skeleton, priors, slow)
         for u, draw, skeleton in zip(rows, draws, skeletons, strict=False)
     ]
     expected = slow.weights(skeletons, [None if t is None else int(seeded.tips[t]) for t in drawn])
@@ -134,12 +134,15 @@ def test_weights_are_those_of_the_slow_twin(seed: int, iterations: int) -> None:
     assert found == pytest.approx(expected)
 
 
+def tips_alive(words: np.ndarray, count: int) -> list[int]:
+    buffer = np.empty(count, np.int64)
+    return buffer[: live_tips(words, buffer)].tolist()
+
+
 def drawn_tip(
-    live: np.ndarray, draw: float, skeleton: Pairs, priors: list, slow: Orchard
+    alive: list[int], draw: float, skeleton: Pairs, priors: list, slow: Orchard
 ) -> int | None:
-    """The tip that a member draws: another one, with the rest of the number, where it is stuck."""
-    buffer = np.empty(len(priors), np.int64)
-    alive = buffer[: live_tips(live, buffer)].tolist()
+    """The tip that a copy draws. One that leads nowhere is given up, for the copies to come too."""
     while alive:
         at = min(int(draw * len(alive)), len(alive) - 1)
         draw = draw * len(alive) - at
@@ -217,6 +220,8 @@ def test_a_base_with_no_edge_gives_the_base_alone() -> None:
 
 
 def test_the_first_population_is_the_base_alone() -> None:
-    population: Population = _bare(random_graph(0), 5)
+    seeded = random_graph(0)
+    table, _, _ = graph_table(seeded, PARAMS, np.random.default_rng(0))
+    population: Population = _bare(seeded, table, 5)
     assert (population.entry == ABSENT).sum() == 8
     assert population.copies.tolist() == [5]

@@ -70,12 +70,17 @@ class GrammarTable(NamedTuple):
 
 
 class Population(NamedTuple):
-    """U different skeletons: entry, state (U, N), nodes (U, W), live tips (U, WT), others (U,)."""
+    """U different skeletons: entry, state (U, N), nodes (U, W), live tips (U, WT), others (U,).
+
+    `frontier[start[u] : start[u + 1]]` are the edges that leave an open node of u for a free one.
+    """
 
     entry: NDArray[np.int32]
     state: NDArray[np.int16]
     nodes: Words
     live: Words
+    frontier: NDArray[np.int32]
+    start: Ints
     key: Words
     score: Floats
     copies: Ints
@@ -124,30 +129,27 @@ def eligible_pairs(
 ) -> int:
     """Write Eligible(S_u, tip) and the Potential of each pair; how many."""
     entry, states, nodes = population.entry, population.state, population.nodes
-    head, out_start = graph.head, graph.out_start
-    following, is_open, free_turns = grammar.following, grammar.is_open, grammar.free_turns
+    frontier, tail = population.frontier, graph.tail
+    following, free_turns = grammar.following, grammar.free_turns
     on_path, after = priors.on_path, priors.after
     count = 0
-    for n in range(entry.shape[1]):
-        state = states[u, n]
-        if entry[u, n] == ABSENT or not is_open[state]:
+    for slot in range(population.start[u], population.start[u + 1]):
+        d = frontier[slot]
+        if not is_free(on_path, tip, d, nodes, u):
             continue
-        for d in range(out_start[n], out_start[n + 1]):
-            if entry[u, head[d]] != ABSENT or not is_free(on_path, tip, d, nodes, u):
+        n = tail[d]
+        for label in range(following.shape[1]):
+            if following[states[u, n], label] < 0:
                 continue
-            for label in range(following.shape[1]):
-                if following[state, label] < 0:
-                    continue
-                value = population.score[u] + reward(graph, entry[u, n], d, label)
-                value += after[tip, d]
-                if free_turns[label] > 0:
-                    value += priors.first[tip, d]
-                if free_turns[label] > 1:
-                    value += priors.second[tip, d]
-                edges[count] = d
-                labels[count] = label
-                potentials[count] = value
-                count += 1
+            value = population.score[u] + reward(graph, entry[u, n], d, label) + after[tip, d]
+            if free_turns[label] > 0:
+                value += priors.first[tip, d]
+            if free_turns[label] > 1:
+                value += priors.second[tip, d]
+            edges[count] = d
+            labels[count] = label
+            potentials[count] = value
+            count += 1
     return count
 
 
@@ -352,35 +354,47 @@ def advance(
     copies: Ints,
 ) -> Population:
     """The population of the candidates that were drawn at least once."""
-    U = 0
+    tails, heads, out_start = graph.tail, graph.head, graph.out_start
+    U, room = 0, 0
     for c in range(len(copies)):
-        U += copies[c] > 0
-    new = Population(
-        np.empty((U, old.entry.shape[1]), np.int32),
-        np.empty((U, old.entry.shape[1]), np.int16),
-        np.empty((U, old.nodes.shape[1]), np.uint64),
-        np.empty((U, old.live.shape[1]), np.uint64),
-        np.empty(U, np.uint64),
-        np.empty(U),
-        np.empty(U, np.int64),
-    )
+        if copies[c] > 0:
+            parent, head = out.parent[stands[c]], heads[out.edge[stands[c]]]
+            room += old.start[parent + 1] - old.start[parent]
+            room += out_start[head + 1] - out_start[head]
+            U += 1
+    N = old.entry.shape[1]
+    entry, state = np.empty((U, N), np.int32), np.empty((U, N), np.int16)
+    nodes = np.empty((U, old.nodes.shape[1]), np.uint64)
+    frontier, start = np.empty(room, np.int32), np.zeros(U + 1, np.int64)
+    lives = np.empty((U, old.live.shape[1]), np.uint64)
+    key, score, many = np.empty(U, np.uint64), np.empty(U), np.empty(U, np.int64)
     u = 0
     for c in range(len(copies)):
         if copies[c] == 0:
             continue
         parent, d, label = out.parent[stands[c]], out.edge[stands[c]], out.label[stands[c]]
-        tail, head = graph.tail[d], graph.head[d]
-        for n in range(old.entry.shape[1]):
-            new.entry[u, n] = old.entry[parent, n]
-            new.state[u, n] = old.state[parent, n]
-        new.nodes[u] = old.nodes[parent]
-        new.live[u] = live[c]
-        new.entry[u, head] = d * LABELS + label
-        new.state[u, tail] = grammar.following[old.state[parent, tail], label]
-        new.state[u, head] = grammar.fresh[label]
-        include(new.nodes[u], head)
-        new.key[u] = old.key[parent] ^ graph.key[d, label]
-        new.score[u] = old.score[parent] + reward(graph, old.entry[parent, tail], d, label)
-        new.copies[u] = copies[c]
+        tail, head = tails[d], heads[d]
+        for n in range(N):
+            entry[u, n] = old.entry[parent, n]
+            state[u, n] = old.state[parent, n]
+        entry[u, head] = d * LABELS + label
+        state[u, tail] = grammar.following[old.state[parent, tail], label]
+        state[u, head] = grammar.fresh[label]
+        nodes[u] = old.nodes[parent]
+        include(nodes[u], head)
+        closed = not grammar.is_open[state[u, tail]]
+        end = start[u]
+        for slot in range(old.start[parent], old.start[parent + 1]):
+            other = old.frontier[slot]
+            frontier[end] = other
+            end += heads[other] != head and not (closed and tails[other] == tail)
+        for other in range(out_start[head], out_start[head + 1]):
+            frontier[end] = other
+            end += entry[u, heads[other]] == ABSENT
+        start[u + 1] = end
+        lives[u] = live[c]
+        key[u] = old.key[parent] ^ graph.key[d, label]
+        score[u] = old.score[parent] + reward(graph, old.entry[parent, tail], d, label)
+        many[u] = copies[c]
         u += 1
-    return new
+    return Population(entry, state, nodes, lives, frontier, start, key, score, many)

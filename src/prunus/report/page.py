@@ -7,6 +7,9 @@ import math
 from collections.abc import Iterable
 from html import escape
 from importlib.resources import files
+from typing import Any
+
+import numpy as np
 
 from prunus.io.export import COLOURS
 from prunus.measure import branches, leaders, lengths_by_label
@@ -28,13 +31,15 @@ th{color:#666;border-bottom:1px solid #ccc}td:first-child,th:first-child{text-al
 """
 
 AXIS = {"backgroundcolor": "#fcfcfc", "gridcolor": "#e5e5e5", "showbackground": True}
-LAYOUT = {
+ZOOM = 2.1
+"""Width of the cloud in the scene when the page opens."""
+LAYOUT: dict[str, Any] = {
     "margin": {"l": 0, "r": 0, "t": 0, "b": 0},
     "legend": {"x": 0, "y": 1, "bgcolor": "rgba(255,255,255,0.75)", "itemsizing": "constant"},
     "scene": {
-        "aspectmode": "data",
+        "aspectmode": "manual",
         "camera": {
-            "eye": {"x": 0.18, "y": -0.78, "z": 0.1},
+            "eye": {"x": 0.35, "y": -1.6, "z": 0.2},
             "up": {"x": 0, "y": 0, "z": 1},
             "projection": {"type": "orthographic"},
         },
@@ -55,6 +60,9 @@ def report_page(result: Result, title: str, notes: Iterable[str] = ()) -> str:
     """The report of one tree as HTML that holds all it needs; `notes` tell how it was read."""
     library = (files("plotly") / "package_data" / "plotly.min.js").read_text(encoding="utf-8")
     traces = scene_traces(result.in_house, result.graph)
+    extent = np.ptp(result.graph.superpoints.cloud.xyz, axis=0)
+    ratio = dict(zip("xyz", (ZOOM * extent / extent.max()).tolist(), strict=True))
+    layout = LAYOUT | {"scene": LAYOUT["scene"] | {"aspectratio": ratio}}
     score = [{"y": [round(value, 4) for value in result.history.tolist()], "mode": "lines"}]
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{escape(title)} - prunus</title>
@@ -72,7 +80,7 @@ beside this page are in the frame of the input.</p>
 <pre>{escape(result.params.to_toml())}</pre></details></div></div>
 <script>
 const quiet = {{responsive: true, displaylogo: false}};
-Plotly.newPlot("scene", {json.dumps(traces)}, {json.dumps(LAYOUT)}, quiet);
+Plotly.newPlot("scene", {json.dumps(traces)}, {json.dumps(layout)}, quiet);
 Plotly.newPlot("score", {json.dumps(score)}, {json.dumps(SCORE_LAYOUT)}, quiet);
 </script></body></html>
 """

@@ -41,7 +41,7 @@ def search(seeded: SeededGraph, params: Parameters, rng: np.random.Generator) ->
     priors = path_priors(graph, score, cost, seeded.base, seeded.tips)
     grammar = grammar_table()
     K, most = params.search.K, params.search.k_max_rep
-    population = _bare(seeded, K)
+    population = _bare(seeded, graph, K)
     best, best_score = population.entry[0].copy(), 0.0
     history = []
     while len(population.score):
@@ -60,9 +60,10 @@ def search(seeded: SeededGraph, params: Parameters, rng: np.random.Generator) ->
     return SearchResult(_skeleton(best, graph, seeded), best_score, np.array(history))
 
 
-def _bare(seeded: SeededGraph, K: int) -> Population:
+def _bare(seeded: SeededGraph, graph: GraphTable, K: int) -> Population:
     """K copies of the skeleton that holds the base alone, every tip still to be reached."""
     N, T = len(seeded.xyz), len(seeded.tips)
+    leaving = np.arange(graph.out_start[seeded.base], graph.out_start[seeded.base + 1])
     entry = np.full((1, N), ABSENT, np.int32)
     entry[0, seeded.base] = BASE
     return Population(
@@ -70,6 +71,8 @@ def _bare(seeded: SeededGraph, K: int) -> Population:
         np.zeros((1, N), np.int16),
         _words(np.array([seeded.base]), N),
         _words(np.arange(T), T),
+        leaving.astype(np.int32),
+        np.array([0, len(leaving)]),
         np.zeros(1, np.uint64),
         np.zeros(1),
         np.array([K]),
