@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from pathlib import Path
@@ -17,7 +18,7 @@ from prunus.io.export import write_ply, write_swc
 from prunus.io.readers import READERS
 from prunus.io.safely import write_bytes
 from prunus.io.skeletons import write_skeleton
-from prunus.kernels.compiled import mark_compiled
+from prunus.kernels.compiled import is_compiled, mark_compiled
 from prunus.measure import branches
 from prunus.model import Label
 from prunus.params import Parameters
@@ -61,7 +62,11 @@ def plan(inputs: list[Path], output: Path | None) -> tuple[list[Task], list[Reco
     files: list[Path] = []
     failed = []
     for path in inputs:
-        inside = clouds_in(path) if path.is_dir() else [path]
+        try:
+            inside = clouds_in(path) if path.is_dir() else [path]
+        except OSError as error:
+            failed.append(failure(path, f"{path}: cannot be read ({error.strerror})"))
+            continue
         if not inside:
             failed.append(failure(path, f"{path}: no point cloud in this folder"))
         files += inside
@@ -86,13 +91,25 @@ def clouds_in(folder: Path) -> list[Path]:
 
 
 def run(tasks: list[Task], options: Options, jobs: int) -> Iterator[Record]:
-    """The records of the tasks as they are done; a bad file gives a record that says why."""
-    if jobs == 1 or len(tasks) <= 1:
-        yield from (attempt(task, options) for task in tasks)
-        return
+    """The records of the tasks as they are done; a bad file gives a record that says why.
+
+    The first run of all works on one tree alone, so that the kernels are compiled only once.
+    """
+    alone = len(tasks) if jobs == 1 else 0 if is_compiled() else 1
+    yield from (attempt(task, options) for task in tasks[:alone])
+    if tasks[alone:]:
+        yield from _side_by_side(tasks[alone:], options, jobs)
+
+
+def _side_by_side(tasks: list[Task], options: Options, jobs: int) -> Iterator[Record]:
     with ProcessPoolExecutor(min(jobs, len(tasks)), mp_context=get_context("spawn")) as pool:
-        waiting = [pool.submit(attempt, task, options) for task in tasks]
-        yield from (done.result() for done in as_completed(waiting))
+        waiting = {pool.submit(attempt, task, options): task for task in tasks}
+        for done in as_completed(waiting):
+            try:
+                yield done.result()
+            except BrokenProcessPool:
+                path = waiting[done].path
+                yield failure(path, f"{path}: its worker was killed, perhaps for want of memory")
 
 
 def attempt(task: Task, options: Options) -> Record:

@@ -141,7 +141,7 @@ def demo(
         _stop(error)
     base = tuple(truth.xyz[0].tolist())
     _report([Task(output / "scan.ply", output)], [], Options(base, "z-up", seed=seed), False, 1)
-    for line in compare(output, truth):
+    for line in [*compare(output, truth), f"  now open {output / 'report.html'}"]:
         typer.echo(line)
 
 
@@ -185,7 +185,6 @@ def _report(tasks: list[Any], failed: list[Any], options: Any, as_json: bool, jo
     with Teller(len(tasks), as_json) as teller:
         if tasks and not is_compiled():
             teller.say("compiling the kernels (the first run only, about half a minute)")
-            jobs = 1
         for record in failed:
             teller.tell(record)
         for record in run(tasks, options, jobs):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from pathlib import Path
 from types import TracebackType
 from typing import Any
 
@@ -76,4 +77,4 @@ class Teller:
         )
         for warning in record["warnings"]:
             typer.echo(f"  {warning}")
-        typer.echo(f"  written: {record['skeleton']} and its neighbours")
+        typer.echo(f"  written to {Path(record['skeleton']).parent}")

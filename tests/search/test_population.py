@@ -5,19 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from prunus.kernels.population import (
-    ABSENT,
-    LABELS,
-    Population,
-    advance,
-    eligible_pairs,
-    live_tips,
-    merge_equal,
-    propose,
-    resample,
-)
+from prunus.kernels.propose import eligible_pairs, live_tips, propose
 from prunus.kernels.ranks import average_ranks
 from prunus.kernels.reference import Orchard, Pairs
+from prunus.kernels.resample import advance, merge_equal, resample
+from prunus.kernels.tables import ABSENT, LABELS, Population
 from prunus.model import CandidateGraph, ScoredGraph, SeededGraph
 from prunus.params import Parameters
 from prunus.search import search, skel_score

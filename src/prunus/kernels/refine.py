@@ -13,7 +13,7 @@ from heapq import heappop, heappush
 import numpy as np
 
 from prunus.kernels.compiled import kernel
-from prunus.kernels.population import GrammarTable, GraphTable
+from prunus.kernels.tables import GrammarTable, GraphTable
 from prunus.model.arrays import Bools, Floats, Ints
 
 OUTSIDE = -1

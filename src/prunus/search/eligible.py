@@ -12,7 +12,7 @@ from itertools import product
 import numpy as np
 
 from prunus.grammar import MAX_SUPPORTS, SEARCHED, TIP_LABEL
-from prunus.kernels.population import GrammarTable
+from prunus.kernels.tables import GrammarTable
 from prunus.model import Label
 from prunus.rules import ROOT, RULES
 

@@ -6,18 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.kernels.population import (
-    ABSENT,
-    BASE,
-    LABELS,
-    GraphTable,
-    Population,
-    advance,
-    merge_equal,
-    propose,
-    resample,
-)
+from prunus.kernels.propose import propose
 from prunus.kernels.ranks import average_ranks
+from prunus.kernels.resample import advance, merge_equal, resample
+from prunus.kernels.tables import ABSENT, BASE, LABELS, GraphTable, Population
 from prunus.model import Floats, Ints, SeededGraph, Skeleton
 from prunus.params import Parameters
 from prunus.search.eligible import grammar_table

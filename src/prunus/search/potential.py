@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from prunus.kernels.paths import tip_paths
-from prunus.kernels.population import GraphTable, PriorTable
+from prunus.kernels.tables import GraphTable, PriorTable
 from prunus.model import Floats, Ints
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from prunus.kernels.population import ABSENT, BASE, LABELS, GrammarTable, GraphTable
 from prunus.kernels.refine import NEVER, OUTSIDE, ROOT, climb, complete
+from prunus.kernels.tables import ABSENT, BASE, LABELS, GrammarTable, GraphTable
 from prunus.model import Floats, Ints
 
 SWEEPS = 50

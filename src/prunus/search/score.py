@@ -6,7 +6,7 @@ import numpy as np
 
 from prunus.grammar import GROWTH_TARGET, SEARCHED
 from prunus.kernels.angles import grow_angle, turn_penalties
-from prunus.kernels.population import GraphTable
+from prunus.kernels.tables import GraphTable
 from prunus.model import Floats, Label, SeededGraph, Skeleton
 from prunus.params import Grow, Parameters, Turn
 
