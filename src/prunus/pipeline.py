@@ -81,7 +81,7 @@ def skeletonize(
     with _timed(seconds, "seeds"):
         seeded, warnings = find_seeds(scored, params, at)
     with _timed(seconds, "search"):
-        found = search(seeded, params, rng)
+        found = search(seeded, params, rng, end_at_tips=True)
     with _timed(seconds, "stubs"):
         framework = drop_stubs(found.skeleton, params.leaders.min_length)
     with _timed(seconds, "side branches"):

@@ -4,8 +4,8 @@ The skeleton is completed to a tree over all reachable nodes. For such a tree th
 and the branches better left out, follow exactly from the leaves down to the base: `worth[n, l]` is
 the best sum of rewards above node n when the edge into n has label l, worked out by walking the
 grammar automaton over the children of n. A move hangs a node on another neighbour; only the two
-ways down to the base change, and no farther than worth changes. A branch may end only at a tip or
-where the first skeleton had a node, so that a move adds paths to tips and no stubs.
+ways down to the base change, and no farther than worth changes. `may_end` says where a branch may
+end: anywhere for the best SkelScore, at tips alone for a union of base-to-tip paths.
 """
 
 from heapq import heappop, heappush

@@ -20,15 +20,26 @@ from prunus.search.score import graph_table
 
 @dataclass(frozen=True, eq=False)
 class SearchResult:
-    """The best skeleton over all iterations, its SkelScore, and the best score (I,) of each."""
+    """The skeleton, its SkelScore, and the best score (I,) of the population in each iteration."""
 
     skeleton: Skeleton
     score: float
     history: Floats
 
 
-def search(seeded: SeededGraph, params: Parameters, rng: np.random.Generator) -> SearchResult:
-    """Grow K skeletons from the base towards the tips (sec. Population-based search)."""
+def search(
+    seeded: SeededGraph,
+    params: Parameters,
+    rng: np.random.Generator,
+    *,
+    end_at_tips: bool = False,
+) -> SearchResult:
+    """Grow K skeletons from the base towards the tips (sec. Population-based search).
+
+    Returns the best over all iterations, refined if the parameters say so. With `end_at_tips` it is
+    then refined once more into a union of base-to-tip paths: a little less SkelScore, and without
+    the branches that explain the same wood twice.
+    """
     graph, score, cost = graph_table(seeded, params, rng)
     priors = path_priors(graph, score, cost, seeded.base, seeded.tips)
     grammar = grammar_table()
@@ -48,7 +59,11 @@ def search(seeded: SeededGraph, params: Parameters, rng: np.random.Generator) ->
         copies = resample(weight, K, most, rng.random(K)) if len(weight) else stands
         population = advance(graph, grammar, population, proposals, stands, live, copies)
     if params.search.refine:
-        best, best_score = refine(best, graph, grammar, cost, seeded.tips)
+        anywhere = np.ones(len(best), np.bool_)
+        best, best_score = refine(best, graph, grammar, cost, anywhere)
+    if params.search.refine and end_at_tips:
+        at_tips = np.isin(np.arange(len(best)), [seeded.base, *seeded.tips])
+        best, best_score = refine(best, graph, grammar, cost, at_tips)
     return SearchResult(_skeleton(best, graph, seeded), best_score, np.array(history))
 
 

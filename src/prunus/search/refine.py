@@ -1,25 +1,31 @@
-"""Beyond the paper: the best skeleton found, improved one edge at a time."""
+"""Beyond the paper: a skeleton improved by hanging one node at a time elsewhere."""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from prunus.kernels.refine import NEVER, OUTSIDE, ROOT, climb, complete
 from prunus.kernels.tables import ABSENT, BASE, LABELS, GrammarTable, GraphTable
-from prunus.model import Floats, Ints
+from prunus.model import Bools, Floats, Ints
 
 SWEEPS = 50
 """More than any tree has needed; a bound, not a setting."""
 
+Entries = NDArray[np.int32]
+"""A skeleton as a row of entries (N,), see `kernels/tables.py`."""
+
 
 def refine(
-    entry: Ints, graph: GraphTable, grammar: GrammarTable, cost: Floats, tips: Ints
-) -> tuple[Ints, float]:
-    """A skeleton's row of entries (N,), at least as good as the one given, and its SkelScore."""
+    entry: Entries, graph: GraphTable, grammar: GrammarTable, cost: Floats, may_end: Bools
+) -> tuple[Entries, float]:
+    """The skeleton (N,) that no move improves, and its SkelScore.
+
+    `may_end` (N,) says at which nodes a branch may end; the base is always one. Where it holds all
+    ends of the skeleton given, the one returned is at least as good. `cost` (D,): Len (1 - Conf).
+    """
     into = np.where(entry >= 0, entry // LABELS, OUTSIDE)
     into[entry == BASE] = ROOT
-    may_end = entry != ABSENT
-    may_end[tips] = True
     order = complete(into, graph, cost)
     worth = climb(into, order, may_end, graph, grammar, SWEEPS)
     chosen = np.full_like(entry, ABSENT)
@@ -28,9 +34,8 @@ def refine(
     waiting = [(base, -1)]
     while waiting:
         node, label = waiting.pop()
-        for d, below in _best_children(
-            node, label, into, worth, bool(may_end[node]), graph, grammar
-        ):
+        ends = bool(may_end[node])
+        for d, below in _best_children(node, label, into, worth, ends, graph, grammar):
             child = int(graph.head[d])
             chosen[child] = d * LABELS + below
             waiting.append((child, below))
