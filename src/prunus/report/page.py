@@ -141,7 +141,8 @@ def _seconds(result: Result) -> str:
         [name, f"{cpu * 1000:.0f}", f"{wall * 1000:.0f}"]
         for name, (cpu, wall) in [*stages, ("total", total)]
     ]
-    return "<h2>Time by stage</h2>" + _table(["stage", "CPU [ms]", "wall [ms]"], rows)
+    note = '<p class="quiet">The first tree of a run also loads the compiled kernels.</p>'
+    return "<h2>Time by stage</h2>" + _table(["stage", "CPU [ms]", "wall [ms]"], rows) + note
 
 
 def _table(names: list[str], rows: list[list[str]]) -> str:
