@@ -47,6 +47,11 @@ def test_the_frame_of_the_real_scan_is_found(real_scan: Path) -> None:
     assert "most wood runs along Y" in scan.notes[0]
 
 
+def test_a_frame_that_the_cloud_contradicts_is_remarked_on(real_scan: Path) -> None:
+    assert "but the cloud looks like optical" in open_scan(real_scan, "z-up").notes[0]
+    assert open_scan(real_scan, "optical").notes == []
+
+
 @pytest.mark.parametrize(
     ("points", "message"),
     [

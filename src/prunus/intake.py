@@ -31,9 +31,12 @@ def open_scan(path: str | Path, frame: str = "auto", unit: str | None = None) ->
         raise PrunusError(f"unknown frame {frame!r}; expected auto, {', '.join(FRAMES)}")
     file = read_file(path, unit)
     notes = list(file.notes)
+    seems, why = find_frame(file.xyz)
     if frame == "auto":
-        frame, why = find_frame(file.xyz)
+        frame = seems
         notes.append(f"frame {frame}: {why}")
+    elif seems != frame and not why.startswith("undecided"):
+        notes.append(f"frame {frame} as asked, but the cloud looks like {seems}: {why}")
     return Scan(PointCloud.from_xyz(file.xyz, frame, file.rgb), file, frame, notes)
 
 

@@ -72,8 +72,8 @@ class Teller:
         """What a person wants to know of a tree, on standard output."""
         edges = ", ".join(f"{word.replace('_', ' ')} {n}" for word, n in record["labels"].items())
         typer.echo(
-            f"{record['file']}: {record['leaders']} leaders, {record['side_branches']} side "
-            f"branches (edges: {edges}) in {record['cpu_s']['total']:.2f} s of CPU"
+            f"{record['file']}: leaders {record['leaders']}, side branches "
+            f"{record['side_branches']} (edges: {edges}) in {record['cpu_s']['total']:.2f} s of CPU"
         )
         for warning in record["warnings"]:
             typer.echo(f"  {warning}")

@@ -131,6 +131,7 @@ GOOD = ply_bytes({"vertex": table_of({"x": XYZ[:, 0], "y": XYZ[:, 1], "z": XYZ[:
         ("bad.las", b"LASF" + bytes(300), "not a readable LAS or LAZ file"),
         ("bad.npy", b"\x93NUMPY\x01\x00", "not a readable numpy file"),
         ("bad.npz", b"PK\x03\x04 nothing", "not a readable numpy file"),
+        ("noise.npz", bytes(range(256)), "not a numpy file"),
         ("kind.docx", b"1 2 3", "unknown kind of file '.docx'; expected one of .ply"),
     ],
 )

@@ -129,6 +129,8 @@ def _read_npz(content: bytes, path: Path) -> Columns:
 
 
 def _load(content: bytes, path: Path) -> Any:
+    if not content.startswith((b"\x93NUMPY", b"PK")):
+        raise PrunusError(f"{path}: not a numpy file: expected it to begin as NPY or NPZ does")
     try:
         return np.load(io.BytesIO(content), allow_pickle=False)
     except (ValueError, OSError, EOFError, zipfile.BadZipFile) as error:

@@ -20,7 +20,10 @@ NEEDED = 1.5
 
 
 def find_frame(xyz: Floats) -> tuple[str, str]:
-    """The name of the frame, and a line that says why. Undecided clouds are taken as `z-up`."""
+    """The name of the frame, and a line that says why.
+
+    Clouds without a decision are taken as `z-up`, and the line begins with `undecided`.
+    """
     step = max(1, len(xyz) // 100_000)
     points = xyz[::step] - xyz[0]
     _, along_y, along_z = wood_along_axes(points)
