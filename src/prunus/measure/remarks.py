@@ -35,14 +35,16 @@ def explained_points(skeleton: Skeleton, graph: SeededGraph) -> float:
 
 
 def _short_supports(skeleton: Skeleton, graph: SeededGraph) -> list[str]:
-    """Supports that end before the scan does, on the side to which they grow."""
-    found = []
+    """Sides to which a support grows and where even the longest ends before the scan does."""
     ends = [np.quantile(graph.superpoints.cloud.xyz[:, 0], share) for share in (0.005, 0.995)]
     x = skeleton.xyz[:, 0]
+    rest: dict[int, float] = {}
     for branch in branches(skeleton, Label.SUPPORT):
         side = int(x[branch.rows[-1]] > x[branch.rows[0]])
-        rest = abs(ends[side] - x[branch.rows[-1]])
-        if rest > SHORT:
-            name = ("left", "right")[side]
-            found.append(f"the {name} support ends {rest:.1f} m before the scan does")
-    return found
+        short = abs(float(ends[side] - x[branch.rows[-1]]))
+        rest[side] = min(short, rest.get(side, short))
+    return [
+        f"the {('left', 'right')[side]} support ends {short:.1f} m before the scan does"
+        for side, short in sorted(rest.items())
+        if short > SHORT
+    ]

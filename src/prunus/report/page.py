@@ -32,8 +32,8 @@ th{color:#666;border-bottom:1px solid #ccc}td:first-child,th:first-child{text-al
 """
 
 AXIS = {"backgroundcolor": "#fcfcfc", "gridcolor": "#e5e5e5", "showbackground": True}
-ZOOM = 2.1
-"""Width of the cloud in the scene when the page opens."""
+WIDTH, HEIGHT = 2.1, 1.7
+"""The cloud in the scene is at most so wide and so high when the page opens."""
 LAYOUT: dict[str, Any] = {
     "margin": {"l": 0, "r": 0, "t": 0, "b": 0},
     "legend": {"x": 0, "y": 1, "bgcolor": "rgba(255,255,255,0.75)", "itemsizing": "constant"},
@@ -62,7 +62,8 @@ def report_page(result: Result, title: str, notes: Iterable[str] = ()) -> str:
     library = _plotly_library()
     traces = scene_traces(result.in_house, result.graph)
     extent = np.ptp(result.graph.superpoints.cloud.xyz, axis=0)
-    ratio = dict(zip("xyz", (ZOOM * extent / extent.max()).tolist(), strict=True))
+    zoom = min(WIDTH / max(extent[0], 1e-6), HEIGHT / max(extent[2], 1e-6))
+    ratio = dict(zip("xyz", (zoom * extent).tolist(), strict=True))
     layout = LAYOUT | {"scene": LAYOUT["scene"] | {"aspectratio": ratio}}
     score = [{"y": [round(value, 4) for value in result.history.tolist()], "mode": "lines"}]
     return f"""<!DOCTYPE html>
