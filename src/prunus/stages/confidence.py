@@ -71,8 +71,8 @@ class HandmadeScorer:
         return np.asarray(1 / (1 + np.exp(-(features @ WEIGHTS + OFFSET))))
 
 
-WEIGHTS = np.array([11.17, -5.18, 2.46, 5.23])
-OFFSET = -7.09
+WEIGHTS = np.array([11.79, -6.37, 2.23, 6.15])
+OFFSET = -7.4
 """Logistic weights of `image_features`. Points off the edge tell against it, less so where they
 drift to one side together: that is a branch that bends, not two branches or noise.
 """
