@@ -56,9 +56,10 @@ class ConstantScorer:
 class HandmadeScorer:
     """How evenly and how tightly the points fill the edge, and how well they line up with it.
 
-    A logistic function of four features of the edge image, fitted to 24 000 edges of simulated
-    pairs of trees, one behind the other, split by tree. On trees it had not seen it told 88 % of
-    the edges right (area under the ROC curve 0.94), and its values were calibrated to 0.1.
+    A logistic function of four features of the edge image, fitted by `bench/fit_handmade.py` to
+    edges of simulated pairs of trees, one behind the other, split by pair. On pairs it had not
+    seen it told 88 % of the edges right (area under the ROC curve 0.94); its values were
+    calibrated to 0.1.
     """
 
     name: str = "handmade"
