@@ -11,7 +11,7 @@ from hypothesis import settings
 from prunus.model import PointCloud, Skeleton
 from prunus.simulate import Faults, grow_tree, scan_tree
 
-# A check that fails for one and passes for the next helps nobody: CI draws the same examples always.
+# A check that fails for one and passes for the next helps nobody: CI always draws the same.
 settings.register_profile("ci", derandomize=True, deadline=None)
 if "CI" in os.environ:
     settings.load_profile("ci")
