@@ -72,7 +72,7 @@ def row_graph(nodes: int, edges_per_node: float = 2.0, seed: int = 100) -> Seede
     ordered = np.concatenate([best[tree], best[~tree]])
     chosen = np.sort(ordered[: round(edges_per_node * nodes)])
     cloud = PointCloud(under.xyz[kept], under.cloud.to_input)
-    own = Superpoints(cloud, cloud.xyz, np.arange(nodes + 1), np.arange(nodes), under.radius)
+    own = Superpoints.of_nodes(cloud, under.radius)
     graph = ScoredGraph(
         CandidateGraph(own, row_of[scored.edges[chosen]]), scored.confidence[chosen], "handmade"
     )

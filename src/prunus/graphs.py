@@ -99,9 +99,7 @@ def _checked_graph(
     pairs, values = pairs[order], values[order]
     if (pairs[1:] == pairs[:-1]).all(axis=1).any():
         raise PrunusError("edges: a pair stands twice; expected each once, in either direction")
-    own = Superpoints(
-        cloud, cloud.xyz, np.arange(count + 1), np.arange(count), params.superpoints.r_super
-    )
+    own = Superpoints.of_nodes(cloud, params.superpoints.r_super)
     return ScoredGraph(CandidateGraph(own, pairs), values, "given")
 
 

@@ -49,6 +49,7 @@ def test_tables_hold_leaders_times_and_parameters(page: str, found: Result) -> N
     for text in ("Leaders, from left to right", "Time by stage", "r_super = 0.1", "Score by"):
         assert text in page
     assert f"Score {found.score:.2f}" in page
+    assert f"({found.graph.superpoints.unused_points:,} in no superpoint)" in page
 
 
 def test_a_page_is_a_few_megabytes(page: str, tmp_path: Path) -> None:

@@ -33,7 +33,7 @@ def random_graph(
     pairs = np.array([(i, j) for i in range(nodes) for j in range(i + 1, nodes)])
     far = np.linalg.norm(xyz[pairs[:, 0]] - xyz[pairs[:, 1]], axis=1)
     pairs = pairs[np.sort(np.argsort(far)[:edges])]
-    own = Superpoints(cloud, cloud.xyz, np.arange(nodes + 1), np.arange(nodes), 0.1)
+    own = Superpoints.of_nodes(cloud, 0.1)
     scored = ScoredGraph(CandidateGraph(own, pairs), rng.uniform(0.2, 1, len(pairs)), "random")
     return SeededGraph(scored, 0, np.arange(nodes - tips, nodes))
 

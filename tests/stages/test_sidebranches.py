@@ -32,8 +32,7 @@ def drawn_graph(picture: str) -> tuple[SeededGraph, Skeleton]:
     far = np.linalg.norm(xyz[:, None] - xyz, axis=2)
     edges = np.argwhere(np.triu(far < 1.1 * STEP, 1))
     cloud = PointCloud.from_xyz(xyz)
-    count = len(xyz)
-    own = Superpoints(cloud, cloud.xyz, np.arange(count + 1), np.arange(count), STEP)
+    own = Superpoints.of_nodes(cloud, STEP)
     scored = ScoredGraph(CandidateGraph(own, edges), np.full(len(edges), 0.9), "drawn")
     skeleton = Skeleton.build(
         cloud.xyz[: len(framework)],

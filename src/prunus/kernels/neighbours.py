@@ -8,7 +8,7 @@ that two cells in one bucket do no harm. Membership is decided by distance alone
 import numpy as np
 
 from prunus.kernels.compiled import kernel
-from prunus.model.arrays import Floats, Ints
+from prunus.model.arrays import GRID, Floats, Ints
 
 
 @kernel
@@ -112,7 +112,7 @@ def cover(xyz: Floats, order: Ints, radius: float) -> tuple[Floats, Ints]:
         for slot in range(count):
             covered[found[slot]] = True
             total += xyz[found[slot]] - xyz[p]
-        mean[N] = xyz[p] + np.rint(total / count * 1048576.0) / 1048576.0
+        mean[N] = xyz[p] + np.rint(total / count / GRID) * GRID
         size[N] = count
         N += 1
     return mean[:N].copy(), size[:N].copy()

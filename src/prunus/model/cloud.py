@@ -39,11 +39,6 @@ class RigidMotion:
         """The motion back."""
         return RigidMotion(self.rotation.T, -self.rotation.T @ self.translation)
 
-    @classmethod
-    def identity(cls) -> RigidMotion:
-        """The motion that moves nothing."""
-        return cls(np.eye(3), np.zeros(3))
-
 
 @dataclass(frozen=True, eq=False)
 class PointCloud:

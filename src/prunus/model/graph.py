@@ -32,6 +32,12 @@ class Superpoints:
     def __len__(self) -> int:
         return len(self.xyz)
 
+    @classmethod
+    def of_nodes(cls, cloud: PointCloud, radius: float) -> Superpoints:
+        """Every point its own superpoint: for graphs that come from elsewhere."""
+        count = len(cloud)
+        return cls(cloud, cloud.xyz, np.arange(count + 1), np.arange(count), radius)
+
     def points_near(self, nodes: Ints) -> Bools:
         """Which points (P,) belong to any of these superpoints."""
         chosen = np.zeros(len(self), np.bool_)

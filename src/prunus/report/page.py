@@ -99,7 +99,8 @@ def _plotly_library() -> str:
 def _summary(result: Result) -> str:
     graph = result.graph
     return (
-        f"<p>Score {result.score:.2f}. {len(graph.superpoints.cloud):,} points, "
+        f"<p>Score {result.score:.2f}. {len(graph.superpoints.cloud):,} points "
+        f"({graph.superpoints.unused_points:,} in no superpoint), "
         f"{len(graph.xyz)} superpoints, {len(graph.edges)} candidate edges "
         f"(confidence: {escape(graph.scored.scorer)}), {len(graph.tips)} tips.</p>"
     )
