@@ -13,7 +13,7 @@ from prunus.model import Floats
 
 PATCH = 0.10
 """Local pieces of wood are this large, metres."""
-PATCHES = 1500
+PATCHES = 400
 """How many pieces are looked at."""
 NEEDED = 1.5
 """One axis must hold this many times as much wood as the other before the evidence counts."""
@@ -24,7 +24,7 @@ def find_frame(xyz: Floats) -> tuple[str, str]:
 
     Clouds without a decision are taken as `z-up`, and the line begins with `undecided`.
     """
-    step = max(1, len(xyz) // 100_000)
+    step = max(1, len(xyz) // 20_000)
     points = xyz[::step] - xyz[0]
     _, along_y, along_z = wood_along_axes(points)
     if along_y > NEEDED * along_z:
