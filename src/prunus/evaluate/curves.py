@@ -32,13 +32,19 @@ def curve_measures(predicted: Skeleton, truth: Skeleton) -> dict[str, float]:
 
 def sampled(skeleton: Skeleton) -> tuple[Floats, Ints]:
     """Points (S, 3) every `SPACING` along the edges, and the label (S,) of each."""
+    points, row = sampled_rows(skeleton)
+    return points, skeleton.label[row].astype(np.int64)
+
+
+def sampled_rows(skeleton: Skeleton) -> tuple[Floats, Ints]:
+    """Points (S, 3) every `SPACING` along the edges, and the row (S,) in which each edge ends."""
     rows = np.arange(1, len(skeleton))
     steps = np.maximum(1, np.rint(skeleton.lengths[rows] / SPACING).astype(np.int64))
     row = np.repeat(rows, steps)
     within_edge = np.arange(len(row)) - np.repeat(np.cumsum(steps) - steps, steps)
     share = ((within_edge + 0.5) / np.repeat(steps, steps))[:, None]
     points = skeleton.xyz[row] * share + skeleton.xyz[skeleton.parent[row]] * (1 - share)
-    return points, skeleton.label[row].astype(np.int64)
+    return points, row
 
 
 def covered(points: Floats, by: Floats) -> float:
