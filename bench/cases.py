@@ -20,6 +20,7 @@ from prunus.evaluate.curves import curve_measures
 from prunus.io.clouds import write_cloud
 from prunus.kernels.frames import edge_images
 from prunus.kernels.neighbours import cover, within
+from prunus.kernels.profiles import edge_profiles
 from prunus.model import SeededGraph
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
@@ -50,10 +51,9 @@ def kernels() -> Iterator[Row]:
     order = np.random.default_rng(0).permutation(len(xyz))
     yield "kernel cover", cpu(lambda: cover(xyz, order, under.radius)), "s"
     yield "kernel within", cpu(lambda: within(xyz, under.xyz, under.radius)), "s"
-    images = cpu(
-        lambda: edge_images(xyz, under.xyz, under.start, under.members, graph.edges, under.radius)
-    )
-    yield "kernel edge_images", images, "s"
+    ends = (xyz, under.xyz, under.start, under.members, graph.edges, under.radius)
+    yield "kernel edge_images", cpu(lambda: edge_images(*ends)), "s"
+    yield "kernel edge_profiles", cpu(lambda: edge_profiles(*ends)), "s"
     table, score, cost = graph_table(graph, PARAMS, np.random.default_rng(0))
     yield (
         "kernel turn_penalties",

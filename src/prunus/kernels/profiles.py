@@ -1,0 +1,69 @@
+"""The profile of each candidate edge: where its points lie along it and how far from its line."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from prunus.kernels.compiled import kernel
+from prunus.kernels.frames import either_end, room_for_ends, tally
+from prunus.model.arrays import Floats, Ints
+
+ALONG = 12
+"""Bins along the edge."""
+REACH = 1.5
+"""How far they reach from its midpoint, to either side, in r."""
+RINGS = (0.15, 0.3, 0.5, 0.75, 1.0)
+"""Outer borders of the rings about the edge's line, in r."""
+AROUND = len(RINGS)
+
+
+@kernel
+def bins_of(local: Floats, count: int, axis: Floats, radius: float, place: Ints) -> None:
+    """Write 1 + the bin of each of the first `count` points of `local` (3, Q); 0 outside."""
+    x, y, z = axis[0], axis[1], axis[2]
+    borders = (np.array(RINGS) * radius) ** 2
+    for q in range(count):
+        px, py, pz = local[0, q], local[1, q], local[2, q]
+        along = px * x + py * y + pz * z
+        px -= along * x
+        py -= along * y
+        pz -= along * z
+        off = px * px + py * py + pz * pz
+        ring = 0
+        for k in range(AROUND):
+            ring += off >= borders[k]
+        step = (along / (2.0 * REACH * radius) + 0.5) * ALONG
+        inside = (step >= 0.0) & (step < ALONG) & (ring < AROUND)
+        place[q] = 1 + int(step) * AROUND + ring if inside else 0
+
+
+@kernel
+def edge_profiles(
+    points: Floats, nodes: Floats, start: Ints, members: Ints, edges: Ints, radius: float
+) -> NDArray[np.float32]:
+    """How many points of either end lie where, (E, ALONG, AROUND), about the line of each edge.
+
+    First axis: equal bins along the edge, from its first node to its second, over
+    [-REACH r, REACH r] about its midpoint. Second axis: rings by distance from its line. Points
+    beyond count nowhere. An edge with its ends swapped has the same profile reversed along the
+    first axis, exactly.
+    """
+    E = len(edges)
+    profiles = np.zeros((E, ALONG, AROUND), np.float32)
+    seen = np.full(len(points), -1)
+    room = room_for_ends(start)
+    local, place = np.empty((3, room)), np.empty(room, np.int64)
+    counts = np.empty(1 + ALONG * AROUND, np.float32)
+    for e in range(E):
+        # From the lower-numbered end, whatever the edge says: a point on the border of two bins
+        # then falls on the same side both ways.
+        a, b = min(edges[e, 0], edges[e, 1]), max(edges[e, 0], edges[e, 1])
+        x = nodes[b] - nodes[a]
+        x = x / math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
+        count = either_end(points, nodes, start, members, edges, e, seen, local)
+        bins_of(local, count, x, radius, place)
+        tally(place, count, counts)
+        profile = counts[1:].reshape(ALONG, AROUND)
+        profiles[e] = profile if edges[e, 0] == a else profile[::-1]
+    return profiles
