@@ -18,7 +18,7 @@ from prunus.model import (
     Superpoints,
 )
 from prunus.params import Parameters
-from prunus.simulate import Faults, grow_tree, scan_tree
+from prunus.simulate import simulate_scan
 from prunus.stages.candidates import find_candidates
 from prunus.stages.confidence import HandmadeScorer, score_edges
 from prunus.stages.seeds import find_seeds
@@ -31,11 +31,10 @@ SPACING = 1.2
 
 @cache
 def tree_scan(seed: int, points: int = 50_000) -> tuple[Skeleton, Floats]:
-    """A true tree and the points of its scan, in one frame."""
-    rng = np.random.default_rng(seed)
-    truth = grow_tree(rng)
-    cloud = scan_tree(truth, rng, Faults(points=points))
-    return truth, cloud.to_input.apply(cloud.xyz)
+    """A true tree and its points in a field scan, in one frame."""
+    scan = simulate_scan(seed)
+    cloud = scan.target_cloud().sample(points, np.random.default_rng(seed))
+    return scan.truth, cloud.to_input.apply(cloud.xyz)
 
 
 @cache

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import settings
 
 from prunus.model import PointCloud, Skeleton
-from prunus.simulate import Faults, grow_tree, scan_tree
+from prunus.simulate import Scan, simulate_scan
 
 # A check that fails for one and passes for the next helps nobody: CI always draws the same.
 settings.register_profile("ci", derandomize=True, deadline=None)
@@ -20,11 +20,16 @@ REAL = Path(__file__).resolve().parents[2] / "shared" / "data" / "ufo_tree0.ply"
 
 
 @cache
+def field_scan(seed: int) -> Scan:
+    """A field scan with the truth of every point."""
+    return simulate_scan(seed)
+
+
+@cache
 def simulated(seed: int, points: int = 20_000) -> tuple[Skeleton, PointCloud]:
-    """A true tree and its scan."""
-    rng = np.random.default_rng(seed)
-    truth = grow_tree(rng)
-    return truth, scan_tree(truth, rng, Faults(points=points))
+    """A true tree and the points of it in a field scan."""
+    scan = field_scan(seed)
+    return scan.truth, scan.target_cloud().sample(points, np.random.default_rng(seed))
 
 
 @pytest.fixture(scope="session")

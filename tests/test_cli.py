@@ -28,8 +28,8 @@ def prunus(*words: object) -> Result:
 @pytest.fixture
 def scan(tmp_path: Path) -> Path:
     """A small simulated scan as a PLY file; its base is the origin."""
-    _, cloud = simulated(2)
-    write_cloud(tmp_path / "tree.ply", cloud.to_input.apply(cloud.xyz))
+    truth, cloud = simulated(2)
+    write_cloud(tmp_path / "tree.ply", cloud.to_input.apply(cloud.xyz) - truth.xyz[0])
     return tmp_path / "tree.ply"
 
 

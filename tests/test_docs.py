@@ -21,8 +21,8 @@ EXAMPLES = [
 def test_python_examples_run(
     page: str, code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    _, cloud = simulated(2)
-    write_cloud(tmp_path / "tree.ply", cloud.to_input.apply(cloud.xyz))
+    truth, cloud = simulated(2)
+    write_cloud(tmp_path / "tree.ply", cloud.to_input.apply(cloud.xyz) - truth.xyz[0])
     monkeypatch.chdir(tmp_path)
     exec(compile(code, page, "exec"), {})
 

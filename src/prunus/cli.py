@@ -49,6 +49,13 @@ class Unit(StrEnum):
     MM = "mm"
 
 
+class ScanKind(StrEnum):
+    """Settings of a simulated scan."""
+
+    FIELD = "field"
+    CLEAN = "clean"
+
+
 class Scorer(StrEnum):
     """Who gives the edge confidence."""
 
@@ -143,6 +150,35 @@ def demo(
     _report([Task(output / "scan.ply", output)], [], Options(base, "z-up", seed=seed), False, 1)
     for line in [*compare(output, truth), f"  now open {output / 'report.html'}"]:
         typer.echo(line)
+
+
+@app.command()
+def simulate(
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder to write to.")],
+    trees: Annotated[int, typer.Option("-n", "--trees", min=1, help="How many trees.")] = 30,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the first; the next has the next.")] = 0,
+    scan: Annotated[ScanKind, typer.Option(help="field: all faults; clean: hardly any.")] = (
+        ScanKind.FIELD
+    ),
+    views: Annotated[bool, typer.Option("--views", help="Write the depth images too.")] = False,
+    jobs: Annotated[int, typer.Option(min=1, help="Trees at the same time.")] = os.cpu_count() or 1,
+) -> None:
+    """Grow an orchard and scan it: clouds with the truth of every point, and true skeletons.
+
+    Thirty trees to learn from or to judge by: `prunus simulate -n 30 -o orchard`
+    """
+    from prunus.progress import progress_bar
+    from prunus.simulate.orchard import simulate_orchard
+
+    seeds = range(seed, seed + trees)
+    try:
+        with progress_bar() as bar:
+            work = bar.add_task("trees", total=trees)
+            for _ in simulate_orchard(output, seeds, scan.value, views, min(jobs, trees)):
+                bar.advance(work)
+    except PrunusError as error:
+        _stop(error)
+    typer.echo(f"{trees} trees written to {output}")
 
 
 @app.command()

@@ -4,23 +4,20 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from prunus.evaluate.curves import curve_measures
 from prunus.io.clouds import write_cloud
 from prunus.io.skeletons import read_skeleton, write_skeleton
 from prunus.model import Label, Skeleton
-from prunus.simulate import grow_tree, scan_tree
+from prunus.simulate import simulate_scan
 
 
 def simulated_scan(folder: Path, seed: int) -> Skeleton:
-    """Grow and scan a tree; writes scan.ply and truth.json, and returns the truth."""
-    rng = np.random.default_rng(seed)
-    truth = grow_tree(rng)
-    cloud = scan_tree(truth, rng)
+    """Grow and scan a tree; writes its points in the scan and truth.json; returns the truth."""
+    scan = simulate_scan(seed)
+    cloud = scan.target_cloud()
     write_cloud(folder / "scan.ply", cloud.to_input.apply(cloud.xyz))
-    write_skeleton(folder / "truth.json", truth)
-    return truth
+    write_skeleton(folder / "truth.json", scan.truth)
+    return scan.truth
 
 
 def compare(folder: Path, truth: Skeleton) -> list[str]:

@@ -13,6 +13,19 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 
+def progress_bar(console: Console | None = None) -> Progress:
+    """A bar that counts and tells the time on a terminal, and nothing in a pipe."""
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        console=console or Console(stderr=True, highlight=False),
+        transient=True,
+        disable=not sys.stderr.isatty(),
+    )
+
+
 class Teller:
     """Tells records as they come, and at the end which failed and why."""
 
@@ -22,15 +35,7 @@ class Teller:
         self.failures: list[dict[str, Any]] = []
         self.done = 0
         self.console = Console(stderr=True, highlight=False)
-        self.bar = Progress(
-            TextColumn("{task.description}"),
-            BarColumn(),
-            MofNCompleteColumn(),
-            TimeElapsedColumn(),
-            console=self.console,
-            transient=True,
-            disable=not sys.stderr.isatty(),
-        )
+        self.bar = progress_bar(self.console)
         self.work = self.bar.add_task("trees", total=total)
 
     def __enter__(self) -> Teller:

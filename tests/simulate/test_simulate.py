@@ -1,47 +1,158 @@
-"""Simulated trees are legal, of a plausible size, and the same for the same seed."""
+"""Simulated trees grow in the ranges asked for; scans know the truth of every point."""
+
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from prunus.measure import branches, leaders
+from prunus.evaluate.curves import covered, sampled
+from prunus.measure import branches
 from prunus.model import Label
-from prunus.rules import offenders
-from prunus.simulate import Faults, Habits, grow_tree, scan_tree
+from prunus.rules import junctions, label_linearity, label_progression, one_trunk_at_base
+from prunus.simulate import Habits, Kind, grow_tree, simulate_scan, ufo_habits
+from prunus.simulate.orchard import read_scan, write_scan
+from tests.conftest import field_scan
+
+
+def habits(**groups: dict[str, object]) -> Habits:
+    """The shipped habits with some values replaced."""
+    values = ufo_habits().model_dump()
+    for group, changed in groups.items():
+        values[group] |= changed
+    return Habits.model_validate(values)
+
+
+def grown(seed: int, asked: Habits | None = None, lean: float = 0.0, **form: object):
+    return grow_tree(np.random.default_rng(seed), asked, lean, **form)
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_a_grown_tree_is_legal_with_the_ranges_asked_for(seed: int) -> None:
-    tree = grow_tree(np.random.default_rng(seed))
-    assert offenders(tree) == {}
+def test_a_grown_tree_has_the_form_and_the_sizes_asked_for(seed: int) -> None:
+    tree = grown(seed)
+    for rule in (label_progression, one_trunk_at_base):  # real trees fork and shoot everywhere
+        assert not rule(*junctions(tree)).any(), rule.__name__
     (trunk,) = branches(tree, Label.TRUNK)
-    low, high = Habits().trunk_height
-    assert low - 0.02 <= trunk.length <= high + 0.02
-    assert len(branches(tree, Label.SUPPORT)) in (1, 2)
-    assert all(0.8 < leader.height < 2.1 for leader in leaders(tree))
-    assert np.isfinite(tree.radius).all() and tree.radius.min() > 0
+    low, high = ufo_habits().trunk.height
+    assert low - 1e-9 <= trunk.length <= high + 1e-9
+    supports = branches(tree, Label.SUPPORT)
+    assert len(supports) in (1, 2)
+    assert sum(arm.length for arm in supports) >= 0.7
+    assert 3 <= len(branches(tree, Label.LEADER)) <= 20
+    assert tree.xyz[tree.edges_with(Label.LEADER), 2].max() < 3.3
+    assert np.isfinite(tree.radius).all() and tree.radius.min() > 0.001
+    assert tree.lengths.max() <= 0.02 + 1e-9
 
 
-def test_the_same_seed_grows_and_scans_the_same() -> None:
-    clouds = []
-    for _ in range(2):
-        rng = np.random.default_rng(5)
-        clouds.append(scan_tree(grow_tree(rng), rng, Faults(points=2000)).xyz)
-    assert np.array_equal(*clouds)
+def test_wood_grows_thinner_from_label_to_label() -> None:
+    tree = grown(3)
+    mean = [tree.radius[tree.edges_with(label)].mean() for label in Label]
+    assert mean == sorted(mean, reverse=True)
 
 
-def test_a_leader_looks_as_fat_as_in_a_real_scan() -> None:
-    rng = np.random.default_rng(1)
-    tree = grow_tree(rng, Habits(v_lean=(0, 0), kinks=(0, 0)))
-    cloud = scan_tree(tree, rng)
-    points = cloud.to_input.apply(cloud.xyz)
-    widths = []
-    for branch in branches(tree, Label.LEADER):
-        middle = tree.xyz[branch.rows[len(branch.rows) // 2]]
-        near = points[np.abs(points - middle).max(axis=1) < [0.1]]
-        widths.append(np.ptp(np.quantile(near[:, 0], [0.05, 0.95])))
-    assert 0.07 < np.median(widths) < 0.12
+def test_supports_grow_where_they_are_asked_to_and_fill_the_room() -> None:
+    tree = grown(1, sides=(-1.0,), room=0.9)
+    (arm,) = branches(tree, Label.SUPPORT)
+    assert arm.length <= 0.9 + 1e-9
+    top = tree.xyz[arm.rows[0]]
+    assert tree.xyz[arm.rows[-1], 0] < top[0] - 0.5
 
 
-def test_one_support_where_two_are_never_wanted() -> None:
-    tree = grow_tree(np.random.default_rng(0), Habits(two_supports=0))
-    assert len(branches(tree, Label.SUPPORT)) == 1
+def test_a_leaning_plane_takes_the_leaders_along() -> None:
+    lean = np.radians(25)
+    tree = grown(2, lean=lean)
+    leaders = tree.xyz[tree.edges_with(Label.LEADER)]
+    slope = np.polyfit(leaders[:, 2], leaders[:, 1], 1)[0]
+    assert 0.5 * np.tan(lean) < slope < 1.3 * np.tan(lean)
+
+
+def level_share(asked: Habits) -> float:
+    """Share of the leaders' length that runs level, over some trees."""
+    trees = [grown(seed, asked) for seed in range(6)]
+    rise = [t.edge_vectors[t.edges_with(Label.LEADER), 2] for t in trees]
+    return float((np.abs(np.concatenate(rise)) < 0.01).mean())
+
+
+def test_leaders_that_run_sideways_have_longer_level_stretches() -> None:
+    never = level_share(habits(leader={"runs": 0.0}))
+    always = level_share(habits(leader={"runs": 1.0}))
+    assert always > 2 * never
+
+
+def test_double_leaders_and_tall_shoots_come_at_the_rates_asked_for() -> None:
+    plain = {"doubles": 0.0}
+    alone = grown(4, habits(leader=plain))
+    forked = grown(4, habits(leader={"doubles": 1.0}))
+
+    def forks(tree) -> int:
+        return int(label_linearity(*junctions(tree)).sum())
+
+    few = habits(leader=plain, side_branch={"forks": 0.0})
+    assert forks(grown(4, few)) == 0
+    assert forks(forked) > forks(alone)
+    shoots = habits(shoot={"on_support": (6, 6), "tall": 1.0}, leader=plain)
+    tree = grown(4, shoots)
+    top = tree.xyz[tree.edges_with(Label.LEADER), 2].max()
+    thin = [b for b in branches(tree, Label.SIDE_BRANCH) if tree.label[b.rows[0]] == Label.SUPPORT]
+    assert max(tree.xyz[b.rows[-1], 2] for b in thin) > 0.7 * top
+
+
+def test_a_scan_is_a_function_of_its_seed() -> None:
+    again, other = simulate_scan(11), simulate_scan(12)
+    first = field_scan(11)
+    assert np.array_equal(first.xyz, again.xyz)
+    assert np.array_equal(first.kind, again.kind)
+    assert first.xyz.shape != other.xyz.shape
+
+
+@pytest.mark.parametrize("seed", [11, 13])
+def test_points_lie_near_the_wood_that_they_are_said_to_belong_to(seed: int) -> None:
+    scan = field_scan(seed)
+    for number, tree in enumerate(scan.row.trees):
+        own = scan.tree == number
+        if own.any():
+            away = np.linalg.norm(scan.xyz[own] - tree.xyz[scan.node[own]], axis=1)
+            assert np.quantile(away - tree.radius[scan.node[own]], 0.9) < 0.06
+    assert (scan.kind[scan.tree == 0] == Kind.TARGET).all()
+    assert np.isin(Kind.GROUND, scan.kind) and np.isin(Kind.BEHIND, scan.kind)
+
+
+def test_a_field_scan_is_seen_from_one_side_and_has_strays_and_gaps() -> None:
+    scan = field_scan(11)
+    curve, labels = sampled(scan.truth)
+    target = scan.xyz[scan.kind == Kind.TARGET]
+    seen = [covered(curve[labels == label], target) for label in Label]
+    assert seen[Label.LEADER] > 0.7 > 0.5 > 0
+    assert seen[Label.SIDE_BRANCH] < seen[Label.LEADER]
+    assert 0 < (scan.kind == Kind.STRAY).mean() < 0.02
+
+
+def test_a_clean_scan_holds_the_target_alone_close_to_its_surface() -> None:
+    scan = simulate_scan(3, "clean")
+    assert set(np.unique(scan.kind)) == {Kind.TARGET}
+    tree = scan.row.trees[0]
+    away = np.linalg.norm(scan.xyz - tree.xyz[scan.node], axis=1)
+    assert np.quantile(away - tree.radius[scan.node], 0.95) < 0.016
+
+
+def test_depth_images_give_the_cloud_back() -> None:
+    scan = field_scan(11)
+    assert len(scan.views) == 6
+    view = scan.views[1]
+    row, column = (values[0] for values in np.nonzero(view.depth))
+    height, width = view.depth.shape
+    z = view.depth[row, column]
+    ray = [(column + 0.5 - width / 2) / scan.focal, (row + 0.5 - height / 2) / scan.focal, 1.0]
+    point = view.nominal.apply(np.array(ray) * z)
+    assert np.linalg.norm(scan.xyz - point, axis=1).min() < 0.01
+
+
+def test_reading_what_was_written_gives_it_back(tmp_path: Path) -> None:
+    scan = field_scan(11)
+    write_scan(tmp_path / "tree", scan, views=True)
+    back = read_scan(tmp_path / "tree")
+    assert np.allclose(back.xyz, scan.xyz, atol=1e-6)
+    assert np.array_equal(back.kind, scan.kind)
+    for ours, theirs in zip(back.trees, scan.row.trees, strict=True):
+        assert np.array_equal(ours.xyz, theirs.xyz) and np.array_equal(ours.label, theirs.label)
+    depth = np.load(tmp_path / "tree" / "view_0.npy")
+    assert np.allclose(depth * 1e-3, scan.views[0].depth, atol=6e-4)

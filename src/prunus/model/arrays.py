@@ -30,6 +30,7 @@ def snapped(xyz: Floats) -> Floats:
     """Coordinates rounded to `GRID`.
 
     On the grid, sums of coordinates are exact, so they do not depend on the order of summation,
-    and a moved or half-turned cloud leads to the very same decisions.
+    and a moved or half-turned cloud leads to the very same decisions. Halves, which a cloud that
+    was on the grid before has about its middle, go outward however the move rounded them.
     """
-    return np.asarray(np.rint(xyz / GRID) * GRID)
+    return np.asarray(np.copysign(np.floor(np.abs(xyz) / GRID + 0.51), xyz) * GRID)

@@ -1,6 +1,8 @@
-"""A simulated orchard: true skeletons from a seed, and scans of them."""
+"""A simulated orchard: true skeletons from a seed, and scans of the row they stand in."""
 
-from prunus.simulate.grow import Habits, grow_tree
-from prunus.simulate.scan import Faults, scan_tree
+from prunus.simulate.grow import grow_tree
+from prunus.simulate.habits import Habits, ufo_habits
+from prunus.simulate.row import Kind
+from prunus.simulate.scan import Scan, simulate_scan
 
-__all__ = ["Faults", "Habits", "grow_tree", "scan_tree"]
+__all__ = ["Habits", "Kind", "Scan", "grow_tree", "simulate_scan", "ufo_habits"]
