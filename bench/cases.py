@@ -17,6 +17,7 @@ import numpy as np
 
 from bench.graphs import PARAMS, graph_of, row_graph, tree_scan
 from prunus.evaluate.curves import curve_measures
+from prunus.evaluate.found import branch_measures
 from prunus.io.clouds import write_cloud
 from prunus.kernels.frames import edge_images
 from prunus.kernels.neighbours import cover, within
@@ -27,6 +28,9 @@ from prunus.pipeline import skeletonize
 from prunus.search import search
 from prunus.search.potential import path_priors
 from prunus.search.score import graph_table
+from prunus.simulate import simulate_scan
+from prunus.stages.confidence import EdgeScorer, HandmadeScorer
+from prunus.stages.networks import NetworkScorer
 
 Row = tuple[str, float, str]
 RUNS = 7
@@ -195,7 +199,7 @@ def optimum() -> Iterator[Row]:
 
 
 def accuracy() -> Iterator[Row]:
-    """Curve measures on ten simulated trees, hand-made scorer, and what each step brings."""
+    """Curve measures on ten simulated field trees, and what each step brings."""
     floorless = PARAMS.changed("confidence", floor=0.0)
     plain = floorless.changed("search", refine=False)
     rows = {
@@ -215,6 +219,42 @@ def accuracy() -> Iterator[Row]:
                 yield f"accuracy, {row}: {name}", mean, "ratio"
 
 
+SCORERS = {
+    "cnn ours": NetworkScorer.shipped("ours"),
+    "cnn paper": NetworkScorer.shipped("paper"),
+    "handmade": HandmadeScorer(),
+}
+
+
+def scorers() -> Iterator[Row]:
+    """Curve measures with each scorer on twenty field scans, the target alone and the whole row."""
+    for what in ("target", "row"):
+        for name, scorer in SCORERS.items():
+            found = [_judged(seed, what, scorer) for seed in range(300, 320)]
+            for measure in found[0]:
+                values = [measures[measure] for measures in found]
+                yield f"{what}, {name}: {measure}", float(np.nanmean(values)), "ratio"
+
+
+def _judged(seed: int, what: str, scorer: EdgeScorer) -> dict[str, float]:
+    scan = simulate_scan(seed)
+    cloud = scan.target_cloud() if what == "target" else scan.cloud()
+    result = skeletonize(cloud, scan.truth.xyz[0], PARAMS, scorer=scorer)
+    found = curve_measures(result.skeleton, scan.truth)
+    return found | branch_measures(result.skeleton, scan.truth)
+
+
+def networks() -> Iterator[Row]:
+    """CPU seconds of each scorer, images or context included, on the edges of one tree."""
+    candidates = graph_of(101).scored.candidates
+    for name, scorer in SCORERS.items():
+        yield (
+            f"scorer {name}, E={len(candidates.edges)}",
+            cpu(lambda: scorer(candidates)),  # noqa: B023 - called at once
+            "s",
+        )
+
+
 CASES: dict[str, Callable[[], Iterator[Row]]] = {
     "kernels": kernels,
     "search": searches,
@@ -223,4 +263,6 @@ CASES: dict[str, Callable[[], Iterator[Row]]] = {
     "quality": quality,
     "optimum": optimum,
     "accuracy": accuracy,
+    "networks": networks,
+    "scorers": scorers,
 }

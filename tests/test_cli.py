@@ -227,3 +227,35 @@ def test_help_loads_nothing_heavy() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "heavy: []" in done.stdout
+
+
+def test_an_orchard_is_written_tree_by_tree(tmp_path: Path) -> None:
+    done = prunus("simulate", "-n", 2, "-o", tmp_path / "orchard", "--seed", 5, "--jobs", 1)
+    assert done.exit_code == 0, done.output
+    names = [path.name for path in sorted((tmp_path / "orchard").iterdir())]
+    assert names == ["tree_000005", "tree_000006"]
+    files = {path.name for path in (tmp_path / "orchard" / names[0]).iterdir()}
+    assert files == {"scan.ply", "truth.json", "trees.npz"}
+    scan, out = tmp_path / "orchard" / names[0] / "scan.ply", tmp_path / "out"
+    assert prunus("skeletonize", scan, "-o", out, *FAST).exit_code == 0
+
+
+def test_training_on_a_folder_without_scans_says_what_it_expects(tmp_path: Path) -> None:
+    pytest.importorskip("torch")
+    done = prunus("train", tmp_path, "-o", tmp_path / "mine.onnx")
+    assert done.exit_code == 2
+    assert "no simulated tree in it" in done.output and "prunus simulate" in done.output
+
+
+def test_weights_that_are_none_fail_with_their_name(scan: Path, tmp_path: Path) -> None:
+    (tmp_path / "bad.onnx").write_text("no network")
+    done = prunus("skeletonize", scan, "-o", tmp_path / "out", "--weights", tmp_path / "bad.onnx")
+    assert done.exit_code == 1
+    assert "bad.onnx: not an ONNX file" in done.output
+
+
+@pytest.mark.parametrize("words", [["--scorer", "handmade"], ["--params", "paper.toml"]])
+def test_other_scorers_can_be_asked_for(words: list[str], scan: Path, tmp_path: Path) -> None:
+    (tmp_path / "paper.toml").write_text('[confidence]\nedge_net = "paper"\n[search]\nK = 20\n')
+    asked = [tmp_path / word if word.endswith(".toml") else word for word in words]
+    assert prunus("skeletonize", scan, "-o", tmp_path / "out", *FAST, *asked).exit_code == 0

@@ -9,7 +9,7 @@ HOME = Path(prunus.__file__).parent
 FLOORS = [
     {"cli"},
     {"progress", "demo", "convert", "batch"},
-    {"report", "evaluate", "simulate"},
+    {"report", "evaluate", "simulate", "learn"},
     {"pipeline", "graphs", "intake"},
     {"sensing", "search", "stages", "measure", "io"},
     {"rules", "grammar", "params", "kernels"},

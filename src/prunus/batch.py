@@ -25,9 +25,7 @@ from prunus.params import Parameters
 from prunus.pipeline import Result, skeletonize
 from prunus.report import report_page
 from prunus.stages.confidence import EdgeScorer, HandmadeScorer
-
-SCORERS: dict[str, type[EdgeScorer]] = {"handmade": HandmadeScorer}
-"""Edge scorers by the name that `--scorer` takes."""
+from prunus.stages.networks import NetworkScorer
 
 Record = dict[str, Any]
 """What `--json` prints of one tree."""
@@ -42,7 +40,8 @@ class Options:
     unit: str | None = None
     params: Parameters = field(default_factory=Parameters)
     seed: int = 0
-    scorer: str = "handmade"
+    scorer: str = "cnn"
+    weights: Path | None = None
     report: bool = True
 
 
@@ -127,7 +126,7 @@ def do(task: Task, options: Options) -> Record:
     cpu, wall = time.process_time(), time.perf_counter()
     scan = open_scan(task.path, options.frame, options.unit)
     reading = (time.process_time() - cpu, time.perf_counter() - wall)
-    scorer = SCORERS[options.scorer]()
+    scorer = scorer_of(options)
     result = skeletonize(scan.cloud, options.base, options.params, options.seed, scorer)
     mark_compiled()
     cpu, wall = time.process_time(), time.perf_counter()
@@ -135,6 +134,15 @@ def do(task: Task, options: Options) -> Record:
     writing = (time.process_time() - cpu, time.perf_counter() - wall)
     seconds = {"read": reading, **result.seconds, "write": writing}
     return _record(task, result, scan, seconds)
+
+
+def scorer_of(options: Options) -> EdgeScorer:
+    """The edge scorer that the options ask for: hand-made, a network of one's own, or ours."""
+    if options.scorer == "handmade":
+        return HandmadeScorer()
+    if options.weights is not None:
+        return NetworkScorer(options.weights)
+    return NetworkScorer.shipped(options.params.confidence.edge_net)
 
 
 def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> None:

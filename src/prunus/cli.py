@@ -59,7 +59,15 @@ class ScanKind(StrEnum):
 class Scorer(StrEnum):
     """Who gives the edge confidence."""
 
+    CNN = "cnn"
     HANDMADE = "handmade"
+
+
+class EdgeNet(StrEnum):
+    """Edge networks."""
+
+    OURS = "ours"
+    PAPER = "paper"
 
 
 def _version(wanted: bool) -> None:
@@ -101,9 +109,10 @@ def skeletonize(
         Path | None, typer.Option(help="Parameters as TOML; every run writes the file it used.")
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
-    scorer: Annotated[
-        Scorer, typer.Option(help="Who gives the edge confidence.")
-    ] = Scorer.HANDMADE,
+    scorer: Annotated[Scorer, typer.Option(help="Who gives the edge confidence.")] = Scorer.CNN,
+    weights: Annotated[
+        Path | None, typer.Option(help="Your own network, made by `prunus train`.")
+    ] = None,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.html.")] = False,
     json: Annotated[
         bool, typer.Option("--json", help="One line of JSON a tree on standard output.")
@@ -123,7 +132,7 @@ def skeletonize(
     try:
         options = Options(
             base, frame.value, unit and unit.value, _parameters(params, points), seed,
-            scorer.value, not no_report,
+            scorer.value, weights, not no_report,
         )  # fmt: skip
     except PrunusError as error:
         _stop(error)
@@ -179,6 +188,40 @@ def simulate(
     except PrunusError as error:
         _stop(error)
     typer.echo(f"{trees} trees written to {output}")
+
+
+@app.command()
+def train(
+    folder: Annotated[Path, typer.Argument(help="Simulated scans, from `prunus simulate`.")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Weights to write (.onnx).")],
+    edge_net: Annotated[
+        EdgeNet, typer.Option(help="paper: Appendix A; ours: edges in context.")
+    ] = EdgeNet.OURS,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
+    epochs: Annotated[int | None, typer.Option(min=1, help="[default: as the recipe]")] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Scans at the same time.")] = os.cpu_count() or 1,
+) -> None:
+    """Learn the edge confidence from simulated scans; prints the paper's two tables.
+
+    `prunus train orchard -o mine.onnx`, then `prunus skeletonize tree.ply --weights mine.onnx`
+    """
+    from prunus.learn.school import school
+    from prunus.learn.tables import table
+    from prunus.progress import progress_bar
+
+    def watch(items: Any, name: str, total: int) -> Any:
+        work = bar.add_task(name, total=total)
+        for item in items:
+            bar.advance(work)
+            yield item
+
+    try:
+        with progress_bar() as bar:
+            report = school(folder, output, edge_net.value, seed, epochs, jobs, watch)
+    except PrunusError as error:
+        _stop(error)
+    for line in table(report["validation"], report["test"]):
+        typer.echo(line)
 
 
 @app.command()

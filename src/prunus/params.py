@@ -55,8 +55,12 @@ class Confidence(_Group):
     alpha_conf: float = _number(
         0.40, "alpha_conf", "1", "edges under this confidence cost score", ge=0, lt=1
     )
-    floor: float = _number(
-        0.05, "-", "1", "edges under this confidence are left out (beyond the paper)", ge=0, lt=1
+    floor: Annotated[float, Field(ge=0, lt=1)] | Literal["auto"] = _number(
+        "auto", "-", "1",
+        "edges under 0 <= floor < 1 are left out (beyond the paper); 'auto' as suits the scorer",
+    )  # fmt: skip
+    edge_net: Literal["ours", "paper"] = _number(
+        "ours", "-", "-", "network that gives the confidence: 'ours' or that of the 'paper'"
     )
 
 
@@ -117,6 +121,13 @@ class SideBranches(_Group):
     )
     turn_max: float = _number(
         PI / 2, "pi / 2", "rad", "greatest turn between edges of a side branch", ge=0, le=PI
+    )
+
+    several: bool = _number(
+        True, "-", "-", "a loose piece may touch the support and hold several (beyond the paper)"
+    )
+    min_length: float = _number(
+        0.10, "-", "m", "the second and further ones of a piece reach so far", ge=0, le=10
     )
 
     @model_validator(mode="after")

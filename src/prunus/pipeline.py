@@ -17,7 +17,8 @@ from prunus.model import Floats, PointCloud, SeededGraph, Skeleton
 from prunus.params import Parameters
 from prunus.search import search, skel_score
 from prunus.stages.candidates import find_candidates
-from prunus.stages.confidence import EdgeScorer, HandmadeScorer, score_edges
+from prunus.stages.confidence import EdgeScorer, score_edges
+from prunus.stages.networks import NetworkScorer
 from prunus.stages.seeds import find_seeds
 from prunus.stages.sidebranches import find_side_branches
 from prunus.stages.stubs import drop_stubs
@@ -77,7 +78,8 @@ def skeletonize(
     with _timed(seconds, "candidates"):
         candidates = find_candidates(superpoints)
     with _timed(seconds, "confidence"):
-        scored = score_edges(candidates, scorer or HandmadeScorer(), params.confidence)
+        scorer = scorer or NetworkScorer.shipped(params.confidence.edge_net)
+        scored = score_edges(candidates, scorer, params.confidence)
     with _timed(seconds, "seeds"):
         seeded, warnings = find_seeds(scored, params, at)
     with _timed(seconds, "search"):

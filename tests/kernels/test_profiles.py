@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from prunus.kernels import reference
 from prunus.kernels.neighbours import within
-from prunus.kernels.profiles import ALONG, AROUND, REACH, RINGS, edge_profiles
+from prunus.kernels.profiles import ALONG, AROUND, REACH, RINGS, STEPS, edge_drifts, edge_profiles
 
 THERE = np.array([[0, 1]])
 BACK = np.array([[1, 0]])
@@ -24,6 +24,10 @@ def test_a_profile_is_that_of_the_slow_twin(seed: int) -> None:
     slow = reference.edge_profile(points, nodes, 0.1, REACH, ALONG, RINGS)
     assert profile.shape == (ALONG, AROUND)
     assert profile.tolist() == slow.tolist()
+    (drift,) = edge_drifts(points, nodes, start, members, THERE, 0.1)
+    assert drift == pytest.approx(reference.edge_drift(points, nodes, 0.1, REACH, STEPS), abs=1e-5)
+    (back,) = edge_drifts(points, nodes, start, members, BACK, 0.1)
+    assert back.tolist() == drift[::-1].tolist()
 
 
 @settings(deadline=None, max_examples=40)
@@ -44,14 +48,14 @@ def test_swapping_the_ends_reverses_the_profile_also_of_points_on_the_borders(se
 def test_points_are_counted_once_each_in_the_bins_they_are_drawn_in() -> None:
     nodes = np.array([[0.0, 0, -0.05], [0.0, 0, 0.05]])
     line = np.array([[0.0, 0, 0.001], [0.0, 0, 0.002], [0.0, 0, -0.001]])
-    aside = np.array([[0.02, 0, 0.001], [0.0, 0.06, 0.001], [0.08, 0, 0.001]])
+    aside = np.array([[0.025, 0, 0.001], [0.0, 0.06, 0.001], [0.09, 0, 0.001]])
     beyond = np.array([[0.0, 0, 0.1499], [0.0, 0, 0.1501], [0.12, 0, 0]])
     points = np.concatenate([line, aside, beyond])
     start, members = np.array([0, 9, 18]), np.tile(np.arange(9), 2)
     (profile,) = edge_profiles(points, nodes, start, members, THERE, 0.1)
-    assert profile[6].tolist() == [2, 1, 0, 1, 1]
-    assert profile[5].tolist() == [1, 0, 0, 0, 0]
-    assert profile[11].tolist() == [1, 0, 0, 0, 0]
+    assert profile[12].tolist() == [2, 0, 1, 0, 0, 1, 0, 1]
+    assert profile[11].tolist() == [1, 0, 0, 0, 0, 0, 0, 0]
+    assert profile[23].tolist() == [1, 0, 0, 0, 0, 0, 0, 0]
     assert profile.sum() == 7
 
 

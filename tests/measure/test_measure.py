@@ -52,7 +52,7 @@ def test_remarks_say_what_is_missing() -> None:
 
 
 def test_a_support_that_ends_early_is_named_by_its_side() -> None:
-    truth, cloud = simulated(2)
+    truth, cloud = simulated(4)
     points = cloud.to_input.apply(cloud.xyz)
     side = np.sign(points[np.abs(points[:, 0]).argmax(), 0])
     stray = np.array([[side * (np.abs(points[:, 0]).max() + 0.6), 0, 1.0]])

@@ -63,8 +63,19 @@ def test_one_that_leaves_the_support_is_none() -> None:
     assert found("l   \nl   \nl   \nssss\nt  x\no   ") == 0
 
 
-def test_a_piece_that_also_touches_the_support_is_none() -> None:
-    assert found("l   \nlxxx\nl  x\nssss\nt   \no   ") == 0
+def test_a_piece_that_also_touches_the_support_is_none_as_in_the_paper() -> None:
+    graph, skeleton = drawn_graph("l   \nlxxx\nl  x\nssss\nt   \no   ")
+    paper = Parameters().changed("side_branches", several=False)
+    added = find_side_branches(skeleton, graph, paper).edges_with(Label.SIDE_BRANCH).sum()
+    assert added == 0
+
+
+def test_beyond_the_paper_it_loses_only_the_superpoints_that_touch() -> None:
+    assert found("l   \nlxxx\nl  x\nl  x\nssss\nt   \no   ") == 4
+
+
+def test_beyond_the_paper_a_piece_may_hold_several_branches() -> None:
+    assert found("lbbb\nlb  \nlbbb\nl   \ns   \nt   \no   ") > 4
 
 
 def test_each_loose_piece_gives_its_own_branch() -> None:

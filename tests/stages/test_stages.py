@@ -78,7 +78,7 @@ def test_hopeless_edges_are_left_out_and_a_constant_scorer_leaves_all(
     cloud = PointCloud.from_xyz(rod([0, 0, 0], [0, 0, 1], rng))
     candidates = find_candidates(find_superpoints(cloud, PARAMS.superpoints, rng))
     some = score_edges(candidates, ConstantScorer(0.5), PARAMS.confidence)
-    none = score_edges(candidates, ConstantScorer(0.01), PARAMS.confidence)
+    none = score_edges(candidates, ConstantScorer(0.01, floor=0.05), PARAMS.confidence)
     assert len(some.edges) == len(candidates.edges)
     assert len(none.edges) == 0
     assert some.scorer == "constant"

@@ -7,6 +7,7 @@ K candidates (the population).
 from prunus.model.arrays import Bools, Floats, Ints
 from prunus.model.cloud import FRAMES, PointCloud, RigidMotion
 from prunus.model.graph import CandidateGraph, ScoredGraph, SeededGraph, Superpoints
+from prunus.model.kind import Kind
 from prunus.model.skeleton import Label, Skeleton
 
 __all__ = [
@@ -15,6 +16,7 @@ __all__ = [
     "CandidateGraph",
     "Floats",
     "Ints",
+    "Kind",
     "Label",
     "PointCloud",
     "RigidMotion",

@@ -2,7 +2,6 @@
 
 from prunus.simulate.grow import grow_tree
 from prunus.simulate.habits import Habits, ufo_habits
-from prunus.simulate.row import Kind
 from prunus.simulate.scan import Scan, simulate_scan
 
-__all__ = ["Habits", "Kind", "Scan", "grow_tree", "simulate_scan", "ufo_habits"]
+__all__ = ["Habits", "Scan", "grow_tree", "simulate_scan", "ufo_habits"]

@@ -9,29 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import IntEnum
 
 import numpy as np
 
-from prunus.model import Floats, Ints, Label, RigidMotion, Skeleton
+from prunus.model import Floats, Ints, Kind, Label, RigidMotion, Skeleton
 from prunus.simulate.grow import draw_sides, grow_tree
 from prunus.simulate.habits import ufo_habits
 from prunus.simulate.settings import RowSettings
 
 NONE = -1
 """No tree, no row of a tree."""
-
-
-class Kind(IntEnum):
-    """What a surface belongs to."""
-
-    TARGET = 0
-    NEIGHBOUR = 1
-    BEHIND = 2
-    GROUND = 3
-    POST = 4
-    WIRE = 5
-    STRAY = 6
 
 
 @dataclass(frozen=True, eq=False)

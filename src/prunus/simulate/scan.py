@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from prunus.kernels.depth import GROUND, NOTHING, draw_ground, draw_wood, points_of
-from prunus.model import Bools, Floats, Ints, Label, PointCloud, RigidMotion, Skeleton
-from prunus.simulate.row import NONE, Kind, Pieces, Row, plant_row
+from prunus.model import Bools, Floats, Ints, Kind, Label, PointCloud, RigidMotion, Skeleton
+from prunus.simulate.row import NONE, Pieces, Row, plant_row
 from prunus.simulate.settings import RigSettings, ScanSettings, Setting, scan_settings
 from prunus.simulate.stereo import focal_length, hold_of, matched
 

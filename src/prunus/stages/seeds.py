@@ -66,7 +66,7 @@ def find_tips(xyz: Floats, edges: Ints, confidence: Floats, params: Parameters) 
 
 
 def nearest_superpoint(scored: ScoredGraph, point: Floats) -> int:
-    """The superpoint nearest to a base picked by hand."""
+    """The superpoint nearest to a base picked by hand, one with an edge where there is one."""
     distance = np.linalg.norm(scored.xyz - point, axis=1)
     reach = BASE_REACH * scored.candidates.superpoints.radius
     if distance.min() > reach:
@@ -77,7 +77,8 @@ def nearest_superpoint(scored: ScoredGraph, point: Floats) -> int:
             f"nearest part of the tree, {_shown(near)}; expected at most {reach:.2f} m "
             "(the base is in the frame and unit of the input file)"
         )
-    return int(distance.argmin())
+    joined = np.isin(np.arange(len(distance)), scored.edges) & (distance <= reach)
+    return int(np.where(joined, distance, distance + reach).argmin())
 
 
 def lowest_of_largest(scored: ScoredGraph, alpha_conf: float) -> int:

@@ -1,0 +1,1 @@
+"""Learn the edge confidence from simulated scans: labels, networks, training. Needs torch."""

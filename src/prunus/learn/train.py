@@ -1,0 +1,253 @@
+"""Training as in Appendix A: Adam, two losses, the best checkpoint; then calibration, then ONNX.
+
+The category loss is that of true edges only; validity and category weigh 2/3 and 1/3, also in the
+validation loss that chooses the checkpoint. The paper's network learns from edges drawn so that
+the classes are even; ours from whole graphs, rare categories weighing more.
+"""
+
+from __future__ import annotations
+
+import copy
+import io
+import math
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+from torch.nn import functional
+
+from prunus.learn.examples import Example
+from prunus.learn.labels import CATEGORIES, INVALID
+from prunus.learn.logistic import fit_logistic
+from prunus.learn.net import VALIDITY, Calibrated, ContextNet, PaperNet
+from prunus.model import Floats, Ints
+
+SHARES = (2 / 3, 1 / 3)
+"""Weights of the validity and the category loss."""
+INPUTS = {
+    "paper": ("image", "description"),
+    "ours": ("profile", "bend", "edge", "met", "meeting"),
+}
+"""Names of the inputs of the exported networks; their outputs are confidence and category."""
+
+Batch = tuple[tuple[Tensor, ...], Tensor]
+"""Inputs of a network, and the category (E,) of each edge."""
+
+
+class Recipe(Protocol):
+    """How one network is trained."""
+
+    rate: float
+    epochs: int
+    weights: Tensor | None
+    """Of the five categories in the category loss."""
+
+    def network(self) -> nn.Module:
+        """The network, untrained."""
+
+    def batches(self, examples: list[Example], rng: np.random.Generator) -> Iterator[Batch]:
+        """One epoch's batches."""
+
+    def judged(self, examples: list[Example]) -> Iterator[Batch]:
+        """Edges to judge a network by, as often valid and of each category as they come."""
+
+
+@dataclass
+class PaperRecipe:
+    """Edges drawn from all examples so that the classes are even."""
+
+    epochs: int = 10
+    rate: float = 1e-3
+    edges: int = 60_000
+    size: int = 256
+    every: int = 10
+    weights: Tensor | None = None
+
+    def network(self) -> nn.Module:
+        """Appendix A."""
+        return PaperNet()
+
+    def batches(self, examples: list[Example], rng: np.random.Generator) -> Iterator[Batch]:
+        """Batches of `size` edges with random flips, `edges` an epoch."""
+        owner = np.repeat(np.arange(len(examples)), [len(one.category) for one in examples])
+        place = np.concatenate([np.arange(len(one.category)) for one in examples])
+        category = np.concatenate([one.category for one in examples])
+        held = [np.flatnonzero(category == k) for k in range(INVALID, len(CATEGORIES))]
+        drawn = [rng.choice(rows, self.edges // len(held)) for rows in held if len(rows)]
+        for rows in np.array_split(rng.permutation(np.concatenate(drawn)), self.edges // self.size):
+            edges = [(examples[owner[row]], place[row]) for row in rows]
+            images = np.stack([one.images[k] for one, k in edges]).astype(np.float32) / 255
+            flips = rng.integers(0, 2, (2, len(rows)))
+            images[flips[0] == 1] = images[flips[0] == 1, ::-1]
+            images[flips[1] == 1] = images[flips[1] == 1, :, ::-1]
+            described = np.stack([one.described[k] for one, k in edges])
+            yield tensors(images, described), torch.from_numpy(category[rows])
+
+    def judged(self, examples: list[Example]) -> Iterator[Batch]:
+        """Some edges of each example: a network that looks at four flips is slow."""
+        for example in examples:
+            yield self.seen(example, slice(None, None, self.every))
+
+    def seen(self, example: Example, rows: slice = slice(None)) -> Batch:
+        """Images and descriptions of an example."""
+        images = example.images[rows].astype(np.float32) / 255
+        category = torch.from_numpy(example.category[rows])
+        return tensors(images, example.described[rows]), category
+
+
+@dataclass
+class ContextRecipe:
+    """Whole graphs, a few at a time."""
+
+    epochs: int = 12
+    rate: float = 2e-3
+    graphs: int = 4
+    weights: Tensor | None = None
+
+    def network(self) -> nn.Module:
+        """Each edge among those that it meets."""
+        return ContextNet()
+
+    def batches(self, examples: list[Example], rng: np.random.Generator) -> Iterator[Batch]:
+        """Batches of `graphs` graphs side by side, each example once."""
+        order = rng.permutation(len(examples))
+        for rows in np.array_split(order, math.ceil(len(order) / self.graphs)):
+            yield side_by_side([examples[row] for row in rows])
+
+    def judged(self, examples: list[Example]) -> Iterator[Batch]:
+        """Every graph, whole."""
+        yield from map(self.seen, examples)
+
+    def seen(self, example: Example) -> Batch:
+        """The fields of the context of an example."""
+        return side_by_side([example])
+
+
+RECIPES: dict[str, type[PaperRecipe] | type[ContextRecipe]] = {
+    "paper": PaperRecipe,
+    "ours": ContextRecipe,
+}
+
+
+def side_by_side(examples: list[Example]) -> Batch:
+    """Some graphs as one that falls in pieces."""
+    offsets = np.cumsum([0, *(len(one.category) for one in examples[:-1])])
+    met = [
+        np.where(one.context.met < 0, -1, one.context.met + offset)
+        for one, offset in zip(examples, offsets, strict=True)
+    ]
+    names = ("profile", "bend", "edge", "meeting")
+    profile, bend, edge, meeting = (
+        np.concatenate([getattr(one.context, name) for one in examples]) for name in names
+    )
+    category = np.concatenate([one.category for one in examples])
+    inputs = tensors(profile, bend, edge, np.concatenate(met), meeting)
+    return inputs, torch.from_numpy(category)
+
+
+def tensors(*arrays: Any) -> tuple[Tensor, ...]:
+    """Torch's view of arrays."""
+    return tuple(torch.from_numpy(np.ascontiguousarray(array)) for array in arrays)
+
+
+def losses(found: Tensor, category: Tensor, weights: Tensor | None = None) -> tuple[Tensor, Tensor]:
+    """Cross entropy of validity over all edges, and of the category over the valid ones."""
+    valid = category >= 0
+    validity = functional.cross_entropy(found[:, :VALIDITY], valid.long())
+    if not valid.any():
+        return validity, 0 * validity
+    kind = functional.cross_entropy(found[valid, VALIDITY:], category[valid], weights)
+    return validity, kind
+
+
+def combined(found: Tensor, category: Tensor, weights: Tensor | None = None) -> Tensor:
+    """The two losses in their shares."""
+    validity, kind = losses(found, category, weights)
+    return SHARES[0] * validity + SHARES[1] * kind
+
+
+def train(
+    recipe: Recipe, training: list[Example], validation: list[Example], rng: np.random.Generator
+) -> Iterator[tuple[nn.Module, float]]:
+    """The best network so far and its validation loss, after each epoch."""
+    torch.manual_seed(int(rng.integers(2**31)))
+    torch.use_deterministic_algorithms(True)
+    net = recipe.network()
+    steps = sum(1 for _ in recipe.batches(training, np.random.default_rng(0)))
+    optimizer = torch.optim.Adam(net.parameters(), recipe.rate)
+    slower = torch.optim.lr_scheduler.OneCycleLR(
+        optimizer, recipe.rate, total_steps=steps * recipe.epochs + 1
+    )
+    best, least = copy.deepcopy(net), math.inf
+    for _ in range(recipe.epochs):
+        net.train()
+        for inputs, category in recipe.batches(training, rng):
+            optimizer.zero_grad()
+            combined(net(*inputs), category, recipe.weights).backward()  # type: ignore[no-untyped-call]
+            nn.utils.clip_grad_norm_(net.parameters(), 1.0)
+            optimizer.step()
+            slower.step()
+        loss = validation_loss(net, recipe, validation)
+        if loss < least:
+            best, least = copy.deepcopy(net), loss
+        yield best, loss
+
+
+@torch.no_grad()
+def validation_loss(net: nn.Module, recipe: Recipe, examples: list[Example]) -> float:
+    """The combined loss, mean over the examples."""
+    net.eval()
+    found = [float(combined(net(*seen), category)) for seen, category in recipe.judged(examples)]
+    return float(np.mean(found))
+
+
+def even_weights(examples: list[Example]) -> Tensor:
+    """Weights (5,) of the categories: rare ones weigh more, by the root of their rarity."""
+    category = np.concatenate([one.category for one in examples])
+    counts = np.bincount(category[category >= 0], minlength=len(CATEGORIES))
+    weights = 1 / np.sqrt(np.maximum(counts, 1))
+    return torch.tensor(weights / weights.mean(), dtype=torch.float32)
+
+
+@torch.no_grad()
+def calibrated(net: nn.Module, recipe: Recipe, examples: list[Example]) -> Calibrated:
+    """The network with its log odds stretched and shifted to fit the validation examples."""
+    net.eval()
+    pairs = [(net(*seen), category) for seen, category in recipe.judged(examples)]
+    found = torch.cat([one for one, _ in pairs])
+    odds = (found[:, 1] - found[:, 0]).double().numpy()
+    valid = torch.cat([category for _, category in pairs]).numpy() >= 0
+    stretch, shift = fit_logistic(odds[:, None], valid)
+    return Calibrated(net, float(stretch), float(shift))
+
+
+@torch.no_grad()
+def predict(net: Calibrated, recipe: Recipe, examples: list[Example]) -> tuple[Floats, Ints, Ints]:
+    """Confidence (E,), likeliest category (E,) and the true one (E,) of the edges judged."""
+    net.eval()
+    found = [(*net(*seen), category) for seen, category in recipe.judged(examples)]
+    confidence, category, truth = (torch.cat(column) for column in zip(*found, strict=True))
+    return confidence.double().numpy(), category.argmax(dim=1).numpy(), truth.numpy()
+
+
+def onnx_bytes(
+    net: Calibrated, recipe: PaperRecipe | ContextRecipe, name: str, example: Example
+) -> bytes:
+    """The network as an ONNX file, for any number of edges."""
+    inputs, _ = recipe.seen(example)
+    net.eval()
+    held: Any = io.BytesIO()
+    names = list(INPUTS[name])
+    axes = {one: {0: "edges"} for one in [*names, "confidence", "category"]}
+    with warnings.catch_warnings():
+        # The older exporter warns that there is a newer one, which needs one more package.
+        warnings.simplefilter("ignore")
+        torch.onnx.export(
+            net, inputs, held, input_names=names, output_names=["confidence", "category"],
+            dynamic_axes=axes, opset_version=18, dynamo=False,
+        )  # fmt: skip
+    return bytes(held.getvalue())

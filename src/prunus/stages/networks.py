@@ -1,0 +1,81 @@
+"""The learned edge confidence: networks made by `prunus.learn`, run by onnxruntime (no torch)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from prunus.errors import PrunusError
+from prunus.model import CandidateGraph, Floats
+from prunus.stages.context import context_of, description
+from prunus.stages.images import edge_images
+
+WEIGHTS = Path(__file__).parents[1] / "weights"
+"""The networks that the package ships: `ours.onnx`, `paper.onnx`."""
+
+
+@dataclass(frozen=True)
+class NetworkScorer:
+    """An edge network from an ONNX file; its inputs say what it wants to see."""
+
+    path: Path = WEIGHTS / "ours.onnx"
+    name: str = "cnn"
+    floor: float = 0.30
+
+    @classmethod
+    def shipped(cls, edge_net: str) -> NetworkScorer:
+        """The network that the package ships under that name: paper or ours."""
+        return cls(WEIGHTS / f"{edge_net}.onnx", "cnn" if edge_net == "ours" else f"cnn {edge_net}")
+
+    def __call__(self, candidates: CandidateGraph) -> Floats:
+        """Confidence (E,)."""
+        return self.judge(candidates)[0]
+
+    def judge(self, candidates: CandidateGraph) -> tuple[Floats, Floats]:
+        """Confidence (E,), and the probability (E, 5) of each category should the edge be valid.
+
+        The categories are trunk, support, leader, side branch and other wood.
+        Raises PrunusError where the file is no edge network.
+        """
+        if len(candidates.edges) == 0:
+            return np.zeros(0), np.zeros((0, 5))
+        session = _session(self.path)
+        wanted = [one.name for one in session.get_inputs()]
+        confidence, category = session.run(["confidence", "category"], _shown(candidates, wanted))
+        return np.asarray(confidence, np.float64), np.asarray(category, np.float64)
+
+
+def _shown(candidates: CandidateGraph, wanted: list[str]) -> dict[str, Any]:
+    """What a network with inputs of these names sees."""
+    if "image" in wanted:
+        return {"image": edge_images(candidates), "description": description(candidates)}
+    context = context_of(candidates)
+    return {name: getattr(context, name) for name in wanted}
+
+
+@cache
+def _session(path: Path) -> Any:
+    import onnxruntime
+
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    options.log_severity_level = 3
+    try:
+        session = onnxruntime.InferenceSession(
+            path.read_bytes(), options, providers=["CPUExecutionProvider"]
+        )
+    except OSError as error:
+        raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
+    except Exception as error:  # onnxruntime has an exception of its own for each kind of damage
+        raise PrunusError(f"{path}: not an ONNX file ({type(error).__name__})") from error
+    names = {one.name for one in session.get_inputs()}
+    known = ({"image", "description"}, {"profile", "bend", "edge", "met", "meeting"})
+    if names not in known or {one.name for one in session.get_outputs()} < {"confidence"}:
+        raise PrunusError(
+            f"{path}: a network with inputs {sorted(names)}; expected one that `prunus train` made"
+        )
+    return session

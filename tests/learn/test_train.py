@@ -1,0 +1,108 @@
+"""Training on a handful of scans: it learns, it repeats, and what it exports says the same."""
+
+import json
+from functools import cache
+from itertools import chain
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="training needs torch: pip install 'prunus[train]'")
+
+from prunus.errors import PrunusError  # noqa: E402
+from prunus.learn import examples as examples_of  # noqa: E402
+from prunus.learn.examples import Example, example_of, split_by_tree  # noqa: E402
+from prunus.learn.labels import TrueWood, edge_labels  # noqa: E402
+from prunus.learn.net import ContextNet, PaperNet  # noqa: E402
+from prunus.learn.school import school  # noqa: E402
+from prunus.learn.train import RECIPES, calibrated, onnx_bytes, predict, side_by_side, train  # noqa: E402
+from prunus.model import CandidateGraph  # noqa: E402
+from prunus.params import Parameters  # noqa: E402
+from prunus.simulate.orchard import simulate_tree  # noqa: E402
+from prunus.stages.candidates import find_candidates  # noqa: E402
+from prunus.stages.networks import NetworkScorer  # noqa: E402
+from prunus.stages.superpoints import find_superpoints  # noqa: E402
+from tests.conftest import field_scan  # noqa: E402
+
+
+@cache
+def graph(seed: int) -> CandidateGraph:
+    rng = np.random.default_rng(seed)
+    cloud = field_scan(seed).target_cloud().sample(15_000, rng)
+    return find_candidates(find_superpoints(cloud, Parameters().superpoints, rng))
+
+
+@cache
+def example(seed: int) -> Example:
+    found = graph(seed)
+    nodes = found.superpoints.cloud.to_input.apply(found.xyz)
+    return example_of(
+        found, edge_labels(nodes, found.edges, TrueWood.of(field_scan(seed).row.trees))
+    )
+
+
+def test_trees_are_split_so_that_none_is_in_two_sets() -> None:
+    folders = [Path(f"tree_{k}") for k in range(20)]
+    parts = split_by_tree(folders, np.random.default_rng(0))
+    assert [len(part) for part in parts] == [14, 4, 2]
+    assert sorted(chain(*parts)) == sorted(folders)
+    with pytest.raises(PrunusError, match="at least 5"):
+        split_by_tree(folders[:4], np.random.default_rng(0))
+
+
+def test_the_papers_network_does_not_care_how_the_image_lies() -> None:
+    net = PaperNet().eval()
+    images, described = torch.rand(3, 16, 32), torch.rand(3, 4)
+    found = net(images, described)
+    assert found.shape == (3, 7)
+    for axes in [(1,), (2,), (1, 2)]:
+        assert torch.allclose(net(images.flip(axes), described), found, atol=1e-6)
+
+
+def test_graphs_side_by_side_do_not_hear_each_other() -> None:
+    net = ContextNet().eval()
+    one, other = example(11), example(13)
+    both = net(*side_by_side([one, other])[0])
+    alone = net(*side_by_side([other])[0])
+    assert torch.allclose(both[len(one.category) :], alone, atol=1e-4)
+
+
+@pytest.mark.parametrize("name", ["paper", "ours"])
+def test_training_learns_repeats_and_exports_what_it_learnt(name: str, tmp_path: Path) -> None:
+    recipe = RECIPES[name](epochs=4 if name == "paper" else 12)
+    if name == "paper":
+        recipe.edges, recipe.size, recipe.every = 1500, 50, 1
+    else:
+        recipe.graphs = 1
+    data = [example(11), example(13)]
+    runs = [list(train(recipe, data, data, np.random.default_rng(0))) for _ in range(2)]
+    losses = [[loss for _, loss in run] for run in runs]
+    assert losses[0] == losses[1]
+    assert losses[0][-1] < 0.85 * losses[0][0]
+    net = calibrated(runs[0][-1][0], recipe, data)
+    path = tmp_path / f"{name}.onnx"
+    path.write_bytes(onnx_bytes(net, recipe, name, data[0]))
+    confidence, category, _ = predict(net, recipe, data[:1])
+    said, kinds = NetworkScorer(path).judge(graph(11))
+    assert said == pytest.approx(confidence, abs=0.01)
+    assert (kinds.argmax(axis=1) == category).mean() > 0.98
+
+
+def test_a_folder_of_scans_gives_weights_and_tables(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(examples_of, "POINTS", (8_000, 12_000))
+    monkeypatch.setattr(examples_of, "GRAPHS", 1)
+    for seed in range(5):
+        simulate_tree(tmp_path / "orchard", seed, "field", views=False)
+    weights = tmp_path / "mine.onnx"
+    report = school(
+        tmp_path / "orchard", weights, "ours", 0, 1, 1, lambda items, name, total: items
+    )
+    assert report["trees"] == [3, 1, 1]
+    written = json.loads(weights.with_suffix(".json").read_text())
+    assert written["test"]["edges"] == report["test"]["edges"] > 100
+    assert written["test"]["validity_accuracy"] == report["test"]["validity_accuracy"] > 0.5
+    confidence = NetworkScorer(weights)(graph(11))
+    assert ((confidence >= 0) & (confidence <= 1)).all()

@@ -1,0 +1,88 @@
+"""The shipped networks: what must not change their scores, and what they refuse."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from prunus.errors import PrunusError
+from prunus.model import CandidateGraph, PointCloud, Superpoints
+from prunus.params import Parameters
+from prunus.stages.candidates import find_candidates
+from prunus.stages.context import MET, context_of, edges_met
+from prunus.stages.networks import NetworkScorer
+from prunus.stages.superpoints import find_superpoints
+from tests.conftest import field_scan
+
+NETS = ["ours", "paper"]
+
+
+@cache
+def graph(shift: tuple[float, ...] = (0.0, 0.0, 0.0), turn: float = 1.0) -> CandidateGraph:
+    points = field_scan(11).target_cloud()
+    xyz = points.to_input.apply(points.xyz) * [turn, turn, 1.0] + np.array(shift)
+    rng = np.random.default_rng(0)
+    cloud = PointCloud.from_xyz(xyz).sample(15_000, rng)
+    return find_candidates(find_superpoints(cloud, Parameters().superpoints, rng))
+
+
+def swapped(candidates: CandidateGraph) -> CandidateGraph:
+    return CandidateGraph(candidates.superpoints, candidates.edges[:, ::-1])
+
+
+@pytest.mark.parametrize("net", NETS)
+def test_scores_lie_between_0_and_1_and_tell_edges_apart(net: str) -> None:
+    confidence, category = NetworkScorer.shipped(net).judge(graph())
+    assert confidence.shape == (len(graph().edges),)
+    assert 0 <= confidence.min() < 0.1 and 0.9 < confidence.max() <= 1
+    assert category.sum(axis=1) == pytest.approx(1, abs=1e-5)
+
+
+@pytest.mark.parametrize("net", NETS)
+def test_moving_or_half_turning_the_cloud_does_not_change_the_score(net: str) -> None:
+    scorer = NetworkScorer.shipped(net)
+    still = scorer(graph())
+    assert np.array_equal(scorer(graph(shift=(612_345.0, 5_123_456.0, 321.0))), still)
+    assert np.array_equal(scorer(graph(turn=-1.0)), still)
+
+
+@pytest.mark.parametrize("net", NETS)
+def test_swapping_the_ends_does_not_change_the_score(net: str) -> None:
+    scorer = NetworkScorer.shipped(net)
+    assert np.abs(scorer(swapped(graph())) - scorer(graph())).max() < 0.02
+
+
+def test_a_graph_without_edges_gets_no_scores() -> None:
+    lone = Superpoints.of_nodes(PointCloud.from_xyz([[0.0, 0, 0]]), 0.1)
+    empty = CandidateGraph(lone, np.zeros((0, 2), np.int64))
+    assert NetworkScorer.shipped("ours")(empty).shape == (0,)
+
+
+def test_a_graph_brought_from_elsewhere_can_be_scored() -> None:
+    nodes = Superpoints.of_nodes(PointCloud.from_xyz(np.eye(3) * 0.1), 0.1)
+    two = CandidateGraph(nodes, np.array([[0, 1], [1, 2]]))
+    for net in NETS:
+        assert np.isfinite(NetworkScorer.shipped(net)(two)).all()
+
+
+def test_each_edge_meets_the_edges_that_share_an_end() -> None:
+    met = edges_met(np.array([[0, 1], [1, 2], [1, 3]]), 4)
+    assert [sorted(row[row >= 0].tolist()) for row in met] == [[1, 2], [0, 2], [0, 1]]
+
+
+def test_the_edge_that_goes_straight_on_comes_first() -> None:
+    xyz = np.array([[0, 0, 0], [0, 0, 0.1], [0, 0, 0.2], [0.1, 0, 0.1]])
+    nodes = Superpoints.of_nodes(PointCloud.from_xyz(xyz), 0.1)
+    context = context_of(CandidateGraph(nodes, np.array([[0, 1], [1, 2], [1, 3]])))
+    assert context.met.shape == (3, 2 * MET)
+    assert context.met[0, MET : MET + 2].tolist() == [1, 2]
+    assert context.meeting[0, MET : MET + 2, 0] == pytest.approx([1.0, 0.0], abs=1e-6)
+    assert (context.meeting[context.met < 0] == 0).all()
+
+
+def test_a_file_that_is_no_network_is_refused_by_name(tmp_path: Path) -> None:
+    (tmp_path / "bad.onnx").write_bytes(b"not a network")
+    for name, said in (("bad.onnx", "not an ONNX file"), ("none.onnx", "cannot be read")):
+        with pytest.raises(PrunusError, match=f"{name}: {said}"):
+            NetworkScorer(tmp_path / name)(graph())
