@@ -20,7 +20,7 @@ format: $(READY)
 lint: $(READY)
 	$(BIN)/ruff check .
 
-types: $(READY)
+types: $(READY) $(LEARN)
 	$(BIN)/mypy
 
 arrows: $(READY)          ## the floor plan alone (also part of `make test`)
