@@ -31,9 +31,18 @@ SPACING = 1.2
 
 @cache
 def tree_scan(seed: int, points: int = 50_000) -> tuple[Skeleton, Floats]:
-    """A true tree and its points in a field scan, in one frame."""
+    """A true tree and its points in a field scan, in one frame.
+
+    More points than the scan holds are repeated ones, a few millimetres off.
+    """
+    rng = np.random.default_rng(seed)
     scan = simulate_scan(seed)
-    cloud = scan.target_cloud().sample(points, np.random.default_rng(seed))
+    cloud = scan.target_cloud()
+    if points > len(cloud):
+        again = rng.integers(0, len(cloud), points - len(cloud))
+        near = cloud.xyz[again] + rng.normal(0, 0.003, (len(again), 3))
+        cloud = PointCloud(np.concatenate([cloud.xyz, near]), cloud.to_input)
+    cloud = cloud.sample(points, rng)
     return scan.truth, cloud.to_input.apply(cloud.xyz)
 
 
