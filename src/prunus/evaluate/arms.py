@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from prunus.measure import Branch
+from prunus.measure import Branch, branch_of_rows
 from prunus.model import Floats, Ints, Label, Skeleton
 from prunus.model.arrays import GRID
 
@@ -39,14 +39,6 @@ def arms(skeleton: Skeleton, shared: Floats | None = None) -> list[Branch]:
         Branch(Label(skeleton.label[run[1]]), np.array(run), float(lengths[run[1:]].sum()))
         for run in runs
     ]
-
-
-def branch_of_rows(branches: list[Branch], rows: int) -> Ints:
-    """The branch (M,) to which the edge that ends in each row belongs; -1 at row 0."""
-    owner = np.full(rows, -1)
-    for number, branch in enumerate(branches):
-        owner[branch.rows[1:]] = number
-    return owner
 
 
 def parents(branches: list[Branch], rows: int) -> Ints:

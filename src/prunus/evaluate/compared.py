@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.evaluate.arms import arms, branch_of_rows, parents
+from prunus.evaluate.arms import arms, parents
 from prunus.evaluate.curves import TOLERANCE, sampled_rows
 from prunus.kernels.neighbours import within
-from prunus.measure import Branch
+from prunus.measure import Branch, branch_of_rows
 from prunus.model import Bools, Floats, Ints, Skeleton
 
 

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from prunus.kernels.neighbours import within
-from prunus.measure import branches
+from prunus.measure import branch_of_rows, branches
 from prunus.model import Bools, Floats, Ints, Label, Skeleton
 
 NEAR = 0.06
@@ -68,7 +68,7 @@ class TrueWood:
         """The table of some trees, all in one frame, and which rows (M,) of each count."""
         counts = counts or [np.ones(len(tree), np.bool_) for tree in trees]
         offsets = np.cumsum([0, *(len(tree) for tree in trees[:-1])])
-        numbers = [branch_numbers(tree) for tree in trees]
+        numbers = [np.maximum(branch_of_rows(branches(t), len(t)), 0) for t in trees]
         first = np.cumsum([0, *(own.max() + 1 for own in numbers[:-1])])
         pairs = list(zip(trees, offsets, strict=True))
         return cls(
@@ -172,14 +172,6 @@ def _most(wood: TrueWood, stretch: Ints) -> int:
     """The category of most of a stretch; the edge into its topmost node is no part of it."""
     edges = stretch[stretch != stretch.min()] if len(stretch) > 1 else stretch
     return int(np.bincount(wood.category[edges]).argmax())
-
-
-def branch_numbers(tree: Skeleton) -> Ints:
-    """The number (M,) of the branch of each row, as `measure.branches` counts them."""
-    number = np.zeros(len(tree), np.int64)
-    for k, branch in enumerate(branches(tree)):
-        number[branch.rows[1:]] = k
-    return number
 
 
 def _ways(tree: Skeleton) -> Floats:

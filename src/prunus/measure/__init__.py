@@ -1,7 +1,15 @@
 """What a robot or a breeder asks of a skeleton."""
 
-from prunus.measure.branches import Branch, branches, lengths_by_label
+from prunus.measure.branches import Branch, branch_of_rows, branches, lengths_by_label
 from prunus.measure.leaders import Leader, leaders
 from prunus.measure.remarks import remarks
 
-__all__ = ["Branch", "Leader", "branches", "leaders", "lengths_by_label", "remarks"]
+__all__ = [
+    "Branch",
+    "Leader",
+    "branch_of_rows",
+    "branches",
+    "leaders",
+    "lengths_by_label",
+    "remarks",
+]

@@ -42,6 +42,14 @@ def branches(skeleton: Skeleton, label: Label | None = None) -> list[Branch]:
     return [branch for branch in found if label is None or branch.label == label]
 
 
+def branch_of_rows(branches: list[Branch], rows: int) -> Ints:
+    """The branch (M,) to which the edge that ends in each row belongs; -1 at row 0."""
+    owner = np.full(rows, -1)
+    for number, branch in enumerate(branches):
+        owner[branch.rows[1:]] = number
+    return owner
+
+
 def lengths_by_label(skeleton: Skeleton) -> dict[Label, float]:
     """Metres of each label."""
     lengths = skeleton.lengths

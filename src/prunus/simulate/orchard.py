@@ -20,8 +20,7 @@ import numpy as np
 from prunus.io.safely import write_bytes
 from prunus.io.scans import write_scan
 from prunus.io.skeletons import write_skeleton
-from prunus.measure import branches
-from prunus.model import Ints, Skeleton
+from prunus.measure import branch_of_rows, branches
 from prunus.simulate.row import NONE
 from prunus.simulate.scan import Scan, simulate_scan
 from prunus.simulate.settings import Setting
@@ -54,20 +53,13 @@ def write_simulated(folder: Path, scan: Scan, views: bool = False) -> None:
     branch, label = np.full(len(scan.xyz), NONE), np.full(len(scan.xyz), NONE)
     for k, tree in enumerate(scan.row.trees):
         own = scan.tree == k
-        branch[own] = _branch_numbers(tree)[scan.node[own]]
+        branch[own] = branch_of_rows(branches(tree), len(tree))[scan.node[own]]
         label[own] = tree.label[scan.node[own]]
     truth = {"kind": scan.kind, "tree": scan.tree, "branch": branch, "label": label}
     if views:
         _write_views(folder, scan)
     write_skeleton(folder / "truth.json", scan.truth)
     write_scan(folder, scan.xyz, truth, scan.row.trees)
-
-
-def _branch_numbers(tree: Skeleton) -> Ints:
-    number = np.zeros(len(tree), np.int64)
-    for k, branch in enumerate(branches(tree)):
-        number[branch.rows[1:]] = k
-    return number
 
 
 def _write_views(folder: Path, scan: Scan) -> None:

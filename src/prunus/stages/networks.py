@@ -60,7 +60,9 @@ def _shown(candidates: CandidateGraph, wanted: list[str]) -> dict[str, Any]:
 @cache
 def _session(path: Path) -> Any:
     import onnxruntime
+    from onnxruntime.capi import onnxruntime_pybind11_state as errors
 
+    damage = (errors.Fail, errors.InvalidArgument, errors.InvalidGraph, errors.InvalidProtobuf)
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     options.log_severity_level = 3
@@ -70,7 +72,7 @@ def _session(path: Path) -> Any:
         )
     except OSError as error:
         raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
-    except Exception as error:  # onnxruntime has an exception of its own for each kind of damage
+    except damage as error:
         raise PrunusError(f"{path}: not an ONNX file ({type(error).__name__})") from error
     names = {one.name for one in session.get_inputs()}
     known = ({"image", "description"}, {"profile", "bend", "edge", "met", "meeting"})
