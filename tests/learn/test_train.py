@@ -89,6 +89,20 @@ def test_training_learns_repeats_and_exports_what_it_learnt(name: str, tmp_path:
     assert (kinds.argmax(axis=1) == category).mean() > 0.98
 
 
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_a_network_that_gives_something_else_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "other.onnx"
+    names = {"input_names": ["image", "description"], "output_names": ["a", "b"]}
+    torch.onnx.export(Swap(), (torch.rand(1), torch.rand(1)), path, dynamo=False, **names)
+    with pytest.raises(PrunusError, match=r"other.onnx: a network from .* to \['a', 'b'\]"):
+        NetworkScorer(path)(graph(11))
+
+
+class Swap(torch.nn.Module):
+    def forward(self, one: torch.Tensor, other: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        return other + 1, one + 1
+
+
 def test_a_folder_of_scans_gives_weights_and_tables(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

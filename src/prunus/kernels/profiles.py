@@ -41,6 +41,16 @@ def bins_of(local: Floats, count: int, axis: Floats, radius: float, place: Ints)
 
 
 @kernel
+def line_of(nodes: Floats, edges: Ints, e: int) -> Floats:
+    """The direction (3,) of an edge from its lower-numbered end, whatever the edge says.
+
+    A point on the border of two bins then falls on the same side both ways.
+    """
+    x = nodes[max(edges[e, 0], edges[e, 1])] - nodes[min(edges[e, 0], edges[e, 1])]
+    return x / math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
+
+
+@kernel
 def edge_profiles(
     points: Floats, nodes: Floats, start: Ints, members: Ints, edges: Ints, radius: float
 ) -> NDArray[np.float32]:
@@ -58,16 +68,12 @@ def edge_profiles(
     local, place = np.empty((3, room)), np.empty(room, np.int64)
     counts = np.empty(1 + ALONG * AROUND, np.float32)
     for e in range(E):
-        # From the lower-numbered end, whatever the edge says: a point on the border of two bins
-        # then falls on the same side both ways.
-        a, b = min(edges[e, 0], edges[e, 1]), max(edges[e, 0], edges[e, 1])
-        x = nodes[b] - nodes[a]
-        x = x / math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
+        x = line_of(nodes, edges, e)
         count = either_end(points, nodes, start, members, edges, e, seen, local)
         bins_of(local, count, x, radius, place)
         tally(place, count, counts)
         profile = counts[1:].reshape(ALONG, AROUND)
-        profiles[e] = profile if edges[e, 0] == a else profile[::-1]
+        profiles[e] = profile if edges[e, 0] < edges[e, 1] else profile[::-1]
     return profiles
 
 
@@ -87,9 +93,7 @@ def edge_drifts(
     local, place = np.empty((3, room)), np.empty(room, np.int64)
     sums, counts = np.empty((1 + STEPS, 3)), np.empty(1 + STEPS)
     for e in range(E):
-        a, b = min(edges[e, 0], edges[e, 1]), max(edges[e, 0], edges[e, 1])
-        x = nodes[b] - nodes[a]
-        x = x / math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
+        x = line_of(nodes, edges, e)
         count = either_end(points, nodes, start, members, edges, e, seen, local)
         bins_of(local, count, x, radius, place)
         sums[:], counts[:] = 0.0, 0.0
@@ -100,7 +104,7 @@ def edge_drifts(
             for axis in range(3):
                 sums[step, axis] += local[axis, q] - along * x[axis]
         for step in range(STEPS):
-            row = step if edges[e, 0] == a else STEPS - 1 - step
+            row = step if edges[e, 0] < edges[e, 1] else STEPS - 1 - step
             for axis in range(3):
                 if counts[1 + step] > 0.0:
                     drifts[e, row, axis] = sums[1 + step, axis] / counts[1 + step] / radius

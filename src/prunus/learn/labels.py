@@ -53,7 +53,8 @@ class TrueWood:
     """All true trees in view as one table of M nodes.
 
     xyz (M, 3), parent (M,) with -1 at the bases, way (M,) along the wood from the base, category
-    (M,) of the edge from the parent, branch (M,) numbered over all trees.
+    (M,) of the edge from the parent, branch (M,) numbered over all trees;
+    counting: the rows that count as wood.
     """
 
     xyz: Floats

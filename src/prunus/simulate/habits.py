@@ -12,11 +12,13 @@ Range = tuple[float, float]
 """A number is drawn evenly between the two."""
 
 
-class _Group(BaseModel):
+class Group(BaseModel):
+    """Frozen settings from a file; an unknown name is an error."""
+
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
-class TrunkHabits(_Group):
+class TrunkHabits(Group):
     """Metres, degrees."""
 
     height: Range
@@ -25,7 +27,7 @@ class TrunkHabits(_Group):
     taper: Range
 
 
-class SupportHabits(_Group):
+class SupportHabits(Group):
     """Metres, degrees, shares."""
 
     two: float
@@ -42,7 +44,7 @@ class SupportHabits(_Group):
     ends_upright: float
 
 
-class LeaderHabits(_Group):
+class LeaderHabits(Group):
     """Metres, degrees, shares."""
 
     count: Range
@@ -72,7 +74,7 @@ class LeaderHabits(_Group):
     double_angle: Range
 
 
-class SideBranchHabits(_Group):
+class SideBranchHabits(Group):
     """Metres, degrees, shares."""
 
     spacing: Range
@@ -90,7 +92,7 @@ class SideBranchHabits(_Group):
     upright_bend: Range
 
 
-class ShootHabits(_Group):
+class ShootHabits(Group):
     """Metres, counts, shares."""
 
     on_support: Range
@@ -100,7 +102,7 @@ class ShootHabits(_Group):
     radius: Range
 
 
-class SpurHabits(_Group):
+class SpurHabits(Group):
     """Metres."""
 
     spacing: Range
@@ -108,7 +110,7 @@ class SpurHabits(_Group):
     radius: Range
 
 
-class StubHabits(_Group):
+class StubHabits(Group):
     """Metres, counts."""
 
     on_support: Range
@@ -117,7 +119,7 @@ class StubHabits(_Group):
     radius: Range
 
 
-class Habits(_Group):
+class Habits(Group):
     """What a UFO tree is drawn from; see `habits.toml`."""
 
     trunk: TrunkHabits

@@ -47,10 +47,9 @@ class Pieces:
 
 @dataclass(frozen=True, eq=False)
 class Row:
-    """True trees (the target first) with their kinds, and all pieces that a camera can see."""
+    """True trees (the target first), and all pieces that a camera can see."""
 
     trees: list[Skeleton]
-    kinds: list[Kind]
     pieces: Pieces
 
 
@@ -61,21 +60,22 @@ def plant_row(rng: np.random.Generator, settings: RowSettings) -> Row:
     lean = side * math.radians(rng.triangular(low, (low + high) / 2, high))
     spacing = rng.uniform(*settings.spacing)
     sides = draw_sides(rng, ufo_habits())
-    trees, kinds = [], []
+    trees: list[Skeleton] = []
+    parts: list[Pieces] = []
     for kind, arm, at in _places(rng, settings, spacing):
         angle = arm * lean + math.radians(rng.uniform(*settings.lean_varies))
         like = sides if rng.random() < settings.alike else ()
         room = spacing * rng.uniform(*settings.room) if spacing else math.inf
-        tree = grow_tree(rng, lean=angle, sides=like, room=room)
-        trees.append(tree.moved(RigidMotion(np.eye(3), at)))
-        kinds.append(kind)
-    parts = [_wood(tree, kind, k) for k, (tree, kind) in enumerate(zip(trees, kinds, strict=True))]
+        grown = grow_tree(rng, lean=angle, sides=like, room=room)
+        tree = grown.moved(RigidMotion(np.eye(3), at))
+        parts.append(_wood(tree, kind, len(trees)))
+        trees.append(tree)
     for angle, depth in ((lean, 0.0), (-lean, float(np.mean(settings.behind_depth)))):
         parts += _trellis(rng, settings, trees, angle, depth)
     if rng.random() < settings.post:
         parts.append(_post(rng, settings))
     parts.append(_grass(rng, settings))
-    return Row(trees, kinds, Pieces.joined(parts))
+    return Row(trees, Pieces.joined(parts))
 
 
 def _places(

@@ -7,18 +7,12 @@ from functools import cache
 from pathlib import Path
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict
-
-from prunus.simulate.habits import Range
+from prunus.simulate.habits import Group, Range
 
 Setting = Literal["field", "clean"]
 
 
-class _Group(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class RowSettings(_Group):
+class RowSettings(Group):
     """What stands around the target: metres, degrees, shares."""
 
     towards: float
@@ -44,7 +38,7 @@ class RowSettings(_Group):
     buried: Range
 
 
-class RigSettings(_Group):
+class RigSettings(Group):
     """Two cameras, one above the other, at three stops of a slide: metres, degrees, pixels."""
 
     width: int
@@ -63,7 +57,7 @@ class RigSettings(_Group):
     moved: float
 
 
-class StereoSettings(_Group):
+class StereoSettings(Group):
     """The faults of stereo matching: pixels, metres, shares."""
 
     voxel: float
@@ -81,7 +75,7 @@ class StereoSettings(_Group):
     ground: float
 
 
-class ScanSettings(_Group):
+class ScanSettings(Group):
     """How an orchard row is scanned; see `scan.toml`."""
 
     row: RowSettings

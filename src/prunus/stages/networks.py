@@ -75,9 +75,11 @@ def _session(path: Path) -> Any:
     except damage as error:
         raise PrunusError(f"{path}: not an ONNX file ({type(error).__name__})") from error
     names = {one.name for one in session.get_inputs()}
+    found = {one.name for one in session.get_outputs()}
     known = ({"image", "description"}, {"profile", "bend", "edge", "met", "meeting"})
-    if names not in known or {one.name for one in session.get_outputs()} < {"confidence"}:
+    if names not in known or found != {"confidence", "category"}:
         raise PrunusError(
-            f"{path}: a network with inputs {sorted(names)}; expected one that `prunus train` made"
+            f"{path}: a network from {sorted(names)} to {sorted(found)}; "
+            "expected one that `prunus train` made"
         )
     return session
