@@ -19,18 +19,20 @@ from bench.graphs import PARAMS, graph_of, row_graph, tree_scan
 from prunus.evaluate.curves import curve_measures
 from prunus.evaluate.found import branch_measures
 from prunus.io.clouds import write_cloud
+from prunus.kernels.axes import contract
 from prunus.kernels.frames import edge_images
 from prunus.kernels.neighbours import cover, within
 from prunus.kernels.profiles import edge_profiles
 from prunus.model import SeededGraph
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
-from prunus.search import search
+from prunus.search import search, search_learned, shipped_score
 from prunus.search.potential import path_priors
 from prunus.search.score import graph_table
 from prunus.simulate import simulate_scan
 from prunus.stages.confidence import EdgeScorer, HandmadeScorer
 from prunus.stages.networks import NetworkScorer
+from prunus.stages.superpoints import GATHER, ROUNDS, THIN
 
 Row = tuple[str, float, str]
 RUNS = 7
@@ -66,10 +68,16 @@ def kernels() -> Iterator[Row]:
     )
     paths = cpu(lambda: path_priors(table, score, cost, graph.base, graph.tips))
     yield "kernel tip_paths", paths, "s"
+    thinned, size = cover(xyz, order, THIN)
+    drawn = cpu(lambda: contract(thinned, np.sqrt(size), GATHER, ROUNDS))
+    yield f"kernel contract, {len(thinned)} points", drawn, "s"
 
 
 def searches() -> Iterator[Row]:
     """The search on connected graphs with two edges a superpoint; growth with both sizes."""
+    tree = skeletonize(tree_scan(101)[1], tree_scan(101)[0].xyz[0]).graph
+    learned = cpu(lambda: search_learned(tree, shipped_score()))
+    yield f"search learned N={len(tree.xyz)} E={len(tree.edges)}", learned, "s"
     target = row_graph(250)
     plain = PARAMS.changed("search", refine=False)
     size = f"N=250 E={len(target.edges)} T={len(target.tips)}"
@@ -198,27 +206,6 @@ def optimum() -> Iterator[Row]:
             yield f"{name}, worst", min(shares), "ratio"
 
 
-def accuracy() -> Iterator[Row]:
-    """Curve measures on ten simulated field trees, and what each step brings."""
-    floorless = PARAMS.changed("confidence", floor=0.0)
-    plain = floorless.changed("search", refine=False)
-    rows = {
-        "default": PARAMS,
-        "no floor": floorless,
-        "no floor, no refining": plain,
-        "as in the paper": plain.changed("leaders", min_length=0.0),
-    }
-    for row, params in rows.items():
-        found = []
-        for seed in range(200, 210):
-            truth, xyz = tree_scan(seed)
-            found.append(curve_measures(skeletonize(xyz, truth.xyz[0], params).skeleton, truth))
-        for name in found[0]:
-            if not name.endswith("_f1"):
-                mean = float(np.nanmean([measures[name] for measures in found]))
-                yield f"accuracy, {row}: {name}", mean, "ratio"
-
-
 SCORERS = {
     "cnn ours": NetworkScorer.shipped("ours"),
     "cnn paper": NetworkScorer.shipped("paper"),
@@ -262,7 +249,6 @@ CASES: dict[str, Callable[[], Iterator[Row]]] = {
     "cold": cold,
     "quality": quality,
     "optimum": optimum,
-    "accuracy": accuracy,
     "networks": networks,
     "scorers": scorers,
 }

@@ -15,7 +15,11 @@ from prunus.learn.examples import Example, examples_in, split_by_tree
 from prunus.learn.logistic import fit_logistic
 from prunus.learn.tables import measures
 from prunus.model import Bools, Floats
+from prunus.params import Parameters
 from prunus.stages.confidence import image_features
+
+AT_RANDOM = Parameters.paper().superpoints
+"""Superpoints as in the paper."""
 
 
 def main(folder: Path) -> None:
@@ -36,7 +40,7 @@ def main(folder: Path) -> None:
 
 def features_of(folders: list[Path]) -> tuple[Floats, Bools]:
     """Features (E, 4) of all edges, and which are valid."""
-    examples = [one for folder in folders for one in examples_in(folder, 0)]
+    examples = [one for folder in folders for one in examples_in(folder, 0, AT_RANDOM)]
     return np.concatenate([features(one) for one in examples]), np.concatenate(
         [one.valid for one in examples]
     )

@@ -24,7 +24,8 @@ from prunus.stages.confidence import HandmadeScorer, score_edges
 from prunus.stages.seeds import find_seeds
 from prunus.stages.superpoints import find_superpoints
 
-PARAMS = Parameters()
+PARAMS = Parameters().changed("search", score="paper").changed("superpoints", place="random")
+"""The population-based search on superpoints at random, refined."""
 SPACING = 1.2
 """Distance of the trees of a row, metres: near enough to grow into each other."""
 
@@ -81,7 +82,7 @@ def row_graph(nodes: int, edges_per_node: float = 2.0, seed: int = 100) -> Seede
     chosen = np.sort(ordered[: round(edges_per_node * nodes)])
     cloud = PointCloud(under.xyz[kept], under.cloud.to_input)
     own = Superpoints.of_nodes(cloud, under.radius)
-    graph = ScoredGraph(
+    graph = ScoredGraph.of_confidence(
         CandidateGraph(own, row_of[scored.edges[chosen]]), scored.confidence[chosen], "handmade"
     )
     return find_seeds(graph, PARAMS, cloud.xyz[row_of[base]])[0]

@@ -37,7 +37,7 @@ def test_any_value_reads_back_exactly(r: float, K: int) -> None:
     [
         (
             "[superpoints]\nr_sper = 0.1",
-            "superpoints.r_sper: unknown parameter.*min_points, r_super",
+            "superpoints.r_sper: unknown parameter.*min_points, place, r_super",
         ),
         ("[serch]\nK = 1", "serch: unknown parameter; expected one of confidence"),
         ("[search]\nK = 0", "search.K: input should be greater than or equal to 1; found 0"),

@@ -106,7 +106,8 @@ def skeletonize(
         str | None, typer.Option(help="Points drawn at random, or 'all'. [default: 50000]")
     ] = None,
     params: Annotated[
-        Path | None, typer.Option(help="Parameters as TOML; every run writes the file it used.")
+        Path | None,
+        typer.Option(help="Parameters as TOML, as every run writes it; 'paper': as in the paper."),
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
     scorer: Annotated[Scorer, typer.Option(help="Who gives the edge confidence.")] = Scorer.CNN,
@@ -207,20 +208,79 @@ def train(
     """
     from prunus.learn.school import school
     from prunus.learn.tables import table
-    from prunus.progress import progress_bar
-
-    def watch(items: Any, name: str, total: int) -> Any:
-        work = bar.add_task(name, total=total)
-        for item in items:
-            bar.advance(work)
-            yield item
+    from prunus.progress import bar_of, progress_bar
 
     try:
         with progress_bar() as bar:
-            report = school(folder, output, edge_net.value, seed, epochs, jobs, watch)
+            report = school(folder, output, edge_net.value, seed, epochs, jobs, bar_of(bar))
     except PrunusError as error:
         _stop(error)
     for line in table(report["validation"], report["test"]):
+        typer.echo(line)
+
+
+@app.command()
+def evaluate(
+    skeleton: Annotated[Path, typer.Argument(help="A skeleton, or a folder of them.")],
+    gold: Annotated[Path, typer.Argument(help="Its gold standard, or a folder of them.")],
+    json: Annotated[bool, typer.Option("--json", help="One line of JSON a pair.")] = False,
+    csv: Annotated[Path | None, typer.Option(help="Write a table, one row a pair.")] = None,
+) -> None:
+    """Measure skeletons against gold standards: what was found, and what of it is right.
+
+    One pair: `prunus evaluate out/skeleton.json gold.json`
+
+    Two folders: `prunus evaluate out orchard --csv measures.csv`
+
+    Reads skeletons of other tools too (PLY edges, SWC, OBJ lines, GraphML), for the geometry.
+    """
+    from json import dumps
+
+    from prunus.io.safely import write_bytes
+    from prunus.judge import compare, csv_bytes, pairs_in, spread_lines, without_nan
+
+    try:
+        records = [compare(*pair) for pair in pairs_in(skeleton, gold)]
+        if csv is not None:
+            write_bytes(csv, csv_bytes(records))
+    except PrunusError as error:
+        _stop(error)
+    lines = [dumps(without_nan(record)) for record in records] if json else spread_lines(records)
+    for line in lines:
+        typer.echo(line)
+
+
+@app.command()
+def experiment(
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder to write to.")],
+    trees: Annotated[int, typer.Option(min=1, help="How many trees.")] = 29,
+    draws: Annotated[int, typer.Option(min=1, help="Draws of 50 000 points a tree.")] = 3,
+    scan: Annotated[ScanKind, typer.Option(help="field: all faults; clean: hardly any.")] = (
+        ScanKind.FIELD
+    ),
+    seed: Annotated[int, typer.Option(min=0, help="Another seed, other trees.")] = 0,
+    ablation: Annotated[
+        bool, typer.Option("--ablation", help="Also what each part brings, one at a time.")
+    ] = False,
+    jobs: Annotated[int, typer.Option(min=1, help="Trees at the same time.")] = os.cpu_count() or 1,
+) -> None:
+    """Run the paper's result section on simulated trees: tables, figures, index.html.
+
+    A quick look: `prunus experiment -o out --trees 6 --draws 1`
+
+    Stopped half way, the same command goes on where it was.
+    """
+    from prunus.experiment.results import experiment, lines_of
+    from prunus.progress import bar_of, progress_bar
+
+    try:
+        with progress_bar() as bar:
+            results = experiment(
+                output, trees, draws, scan.value, seed, ablation, min(jobs, trees), bar_of(bar)
+            )
+    except PrunusError as error:
+        _stop(error)
+    for line in [*lines_of(results), "", f"written to {output / 'index.html'}"]:
         typer.echo(line)
 
 
@@ -247,7 +307,10 @@ def convert(
 def _parameters(path: Path | None, points: str | None) -> Parameters:
     from prunus.params import Parameters
 
-    params = Parameters() if path is None else Parameters.from_toml(path)
+    if path == Path("paper") and not path.exists():
+        params = Parameters.paper()
+    else:
+        params = Parameters() if path is None else Parameters.from_toml(path)
     if points is None:
         return params
     if points not in ("all", "none") and not points.isdigit():

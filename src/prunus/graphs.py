@@ -100,7 +100,7 @@ def _checked_graph(
     if (pairs[1:] == pairs[:-1]).all(axis=1).any():
         raise PrunusError("edges: a pair stands twice; expected each once, in either direction")
     own = Superpoints.of_nodes(cloud, params.superpoints.r_super)
-    return ScoredGraph(CandidateGraph(own, pairs), values, "given")
+    return ScoredGraph.of_confidence(CandidateGraph(own, pairs), values, "given")
 
 
 def _check_indices(name: str, indices: NDArray[np.int64], count: int) -> None:

@@ -47,6 +47,15 @@ class Cover(_Group):
     min_points: int = _number(
         8, "min_points", "points", "balls with fewer points are noise", ge=1, le=10_000
     )
+    place: Literal["axes", "random"] = _number(
+        "axes", "-", "-", "'axes': along the branches and where they meet; 'random': as the paper"
+    )
+    along: float = _number(
+        0.08, "-", "m", "a superpoint on an axis covers so much of it to either end", gt=0, le=10
+    )
+    across: float = _number(
+        0.04, "-", "m", "and what of the drawn-together cloud is so near the axis", gt=0, le=10
+    )
 
 
 class Confidence(_Group):
@@ -91,7 +100,13 @@ class Grow(_Group):
 
 
 class Search(_Group):
-    """Population-based search."""
+    """The search; all but `score` is of the population-based one."""
+
+    score: Literal["learned", "paper"] = _number(
+        "learned", "-", "-",
+        "'paper': SkelScore and the population-based search; 'learned': beyond it, all labels at "
+        "once (a scorer that tells no categories gets the paper's)",
+    )  # fmt: skip
 
     K: int = _number(500, "K", "skeletons", "size of the population", ge=1, le=1_000_000)
     k_max_rep: int = _number(
@@ -138,7 +153,10 @@ class SideBranches(_Group):
 
 
 class Parameters(_Group):
-    """All parameters, one frozen group a stage. The defaults are the paper's values."""
+    """All parameters, one frozen group a stage.
+
+    Numbers of the paper have its values; what goes beyond it can be switched off (`paper()`).
+    """
 
     input: Input = Input()
     superpoints: Cover = Cover()
@@ -149,6 +167,17 @@ class Parameters(_Group):
     search: Search = Search()
     leaders: Leaders = Leaders()
     side_branches: SideBranches = SideBranches()
+
+    @classmethod
+    def paper(cls) -> Parameters:
+        """The method as the paper has it, without what we do beyond it."""
+        return cls(
+            superpoints=Cover(place="random"),
+            confidence=Confidence(floor=0.0, edge_net="paper"),
+            search=Search(score="paper", refine=False),
+            leaders=Leaders(min_length=0.0),
+            side_branches=SideBranches(several=False),
+        )
 
     @classmethod
     def parse(cls, values: Any, source: str = "params") -> Parameters:

@@ -15,7 +15,7 @@ from prunus.errors import PrunusError
 from prunus.measure import remarks
 from prunus.model import Floats, PointCloud, SeededGraph, Skeleton
 from prunus.params import Parameters
-from prunus.search import search, skel_score
+from prunus.search import SearchResult, search, search_learned, shipped_score, skel_score
 from prunus.stages.candidates import find_candidates
 from prunus.stages.confidence import EdgeScorer, score_edges
 from prunus.stages.networks import NetworkScorer
@@ -82,17 +82,29 @@ def skeletonize(
         scored = score_edges(candidates, scorer, params.confidence)
     with _timed(seconds, "seeds"):
         seeded, warnings = find_seeds(scored, params, at)
+    if params.search.score == "learned" and scored.category.size:
+        with _timed(seconds, "search"):
+            found = search_learned(seeded, shipped_score())
+    else:
+        found = _as_in_the_paper(seeded, params, rng, seconds)
+    with _timed(seconds, "measures"):
+        warnings += remarks(found.skeleton, seeded)
+    return Result(
+        found.skeleton, seeded, found.score, found.history, seconds, params, seed, warnings
+    )
+
+
+def _as_in_the_paper(
+    seeded: SeededGraph, params: Parameters, rng: np.random.Generator, seconds: Seconds
+) -> SearchResult:
+    """Trunk, supports and leaders first, side branches afterwards."""
     with _timed(seconds, "search"):
         found = search(seeded, params, rng, end_at_tips=True)
     with _timed(seconds, "stubs"):
         framework = drop_stubs(found.skeleton, params.leaders.min_length)
     with _timed(seconds, "side branches"):
         skeleton = find_side_branches(framework, seeded, params)
-    with _timed(seconds, "measures"):
-        warnings += remarks(skeleton, seeded)
-
-    score = skel_score(skeleton, params)
-    return Result(skeleton, seeded, score, found.history, seconds, params, seed, warnings)
+    return SearchResult(skeleton, skel_score(skeleton, params), found.history)
 
 
 @contextmanager

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -24,6 +25,18 @@ def progress_bar(console: Console | None = None) -> Progress:
         transient=True,
         disable=not sys.stderr.isatty(),
     )
+
+
+def bar_of(bar: Progress) -> Callable[[Iterable[Any], str, int], Iterator[Any]]:
+    """A function that passes items on as they come and counts them, under a name, on the bar."""
+
+    def watch(items: Iterable[Any], name: str, total: int) -> Iterator[Any]:
+        work = bar.add_task(name, total=total)
+        for item in items:
+            bar.advance(work)
+            yield item
+
+    return watch
 
 
 class Teller:

@@ -77,3 +77,11 @@ def offenders(skeleton: Skeleton) -> dict[str, Ints]:
     table = junctions(skeleton)
     broken = {rule.__name__: np.flatnonzero(rule(*table)) for rule in RULES}
     return {name: rows for name, rows in broken.items() if len(rows)}
+
+
+def can_leave(parent: Label | None, label: Label) -> bool:
+    """Whether the rules let a branch of that label leave one of another; None is the base."""
+    incoming = np.array([ROOT if parent is None else int(parent)])
+    outgoing = np.zeros((1, len(Label)), np.int64)
+    outgoing[0, label] = 1
+    return not any(rule(incoming, outgoing)[0] for rule in RULES)

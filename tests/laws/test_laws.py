@@ -9,7 +9,7 @@ from prunus.model import PointCloud, Skeleton
 from prunus.params import Parameters
 from prunus.pipeline import Result, skeletonize
 from prunus.rules import offenders
-from prunus.search import skel_score
+from prunus.search import learned_score_of, shipped_score, skel_score
 from tests.conftest import simulated
 
 SMALL = Parameters().changed("search", K=60)
@@ -51,9 +51,20 @@ def test_every_edge_is_a_candidate_with_its_confidence(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_the_score_is_the_sum_of_the_rewards(seed: int) -> None:
+def test_the_score_is_the_sum_of_its_terms(seed: int) -> None:
     found = result(seed)
-    assert found.score == pytest.approx(skel_score(found.in_house, SMALL))
+    told = learned_score_of(found.in_house, found.graph, shipped_score())
+    assert found.score == pytest.approx(told, abs=1e-6)
+    assert (np.diff(found.history) >= 0).all()
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_as_in_the_paper_the_score_is_the_sum_of_the_rewards(seed: int) -> None:
+    truth, cloud = simulated(seed)
+    params = Parameters.paper().changed("search", K=60)
+    found = skeletonize(cloud, truth.xyz[0], params, seed)
+    assert found.score == pytest.approx(skel_score(found.in_house, params))
+    assert offenders(found.skeleton) == {}
 
 
 @pytest.mark.parametrize("seed", SEEDS)

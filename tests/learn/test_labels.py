@@ -11,9 +11,9 @@ from prunus.learn.labels import (
     OTHER,
     TrueWood,
     categories,
-    counting_rows,
     edge_labels,
 )
+from prunus.measure import counting_rows
 from prunus.model import Label, Skeleton
 from tests.conftest import field_scan
 

@@ -34,7 +34,9 @@ def random_graph(
     far = np.linalg.norm(xyz[pairs[:, 0]] - xyz[pairs[:, 1]], axis=1)
     pairs = pairs[np.sort(np.argsort(far)[:edges])]
     own = Superpoints.of_nodes(cloud, 0.1)
-    scored = ScoredGraph(CandidateGraph(own, pairs), rng.uniform(0.2, 1, len(pairs)), "random")
+    scored = ScoredGraph.of_confidence(
+        CandidateGraph(own, pairs), rng.uniform(0.2, 1, len(pairs)), "random"
+    )
     return SeededGraph(scored, 0, np.arange(nodes - tips, nodes))
 
 

@@ -218,7 +218,9 @@ def test_a_base_with_no_edge_gives_the_base_alone() -> None:
     graph = random_graph(0)
     away = ~(graph.edges == 0).any(axis=1)
     candidates = CandidateGraph(graph.superpoints, graph.edges[away])
-    cut = SeededGraph(ScoredGraph(candidates, graph.confidence[away], "cut"), 0, np.array([8]))
+    cut = SeededGraph(
+        ScoredGraph.of_confidence(candidates, graph.confidence[away], "cut"), 0, np.array([8])
+    )
     found = search(cut, PARAMS, np.random.default_rng(0))
     assert len(found.skeleton) == 1
     assert found.score == 0

@@ -33,7 +33,9 @@ def drawn_graph(picture: str) -> tuple[SeededGraph, Skeleton]:
     edges = np.argwhere(np.triu(far < 1.1 * STEP, 1))
     cloud = PointCloud.from_xyz(xyz)
     own = Superpoints.of_nodes(cloud, STEP)
-    scored = ScoredGraph(CandidateGraph(own, edges), np.full(len(edges), 0.9), "drawn")
+    scored = ScoredGraph.of_confidence(
+        CandidateGraph(own, edges), np.full(len(edges), 0.9), "drawn"
+    )
     skeleton = Skeleton.build(
         cloud.xyz[: len(framework)],
         framework.parent,

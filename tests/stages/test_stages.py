@@ -46,9 +46,7 @@ def test_superpoints_lie_in_the_wood_and_noise_gets_none(rng: np.random.Generato
 
 def test_a_cloud_too_thin_for_any_superpoint_is_refused(rng: np.random.Generator) -> None:
     cloud = PointCloud.from_xyz(np.arange(30.0).reshape(10, 3))
-    with pytest.raises(
-        PrunusError, match=r"no ball of 0.1 m holds 8 points \(the fullest holds 1 of"
-    ):
+    with pytest.raises(PrunusError, match=r"no superpoint holds 8 points \(the fullest holds 0 of"):
         find_superpoints(cloud, PARAMS.superpoints, rng)
 
 
@@ -147,7 +145,7 @@ def test_superpoints_in_one_place_get_no_edge() -> None:
     from prunus.model import Superpoints
 
     cloud = PointCloud.from_xyz(np.zeros((4, 3)))
-    same = Superpoints(cloud, np.zeros((2, 3)), [0, 4, 8], [0, 1, 2, 3] * 2, 0.1)
+    same = Superpoints(cloud, np.zeros((2, 3)), [0, 4, 8], [0, 1, 2, 3] * 2, 0.1, [0.1, 0.1])
     found = find_candidates(same)
     assert isinstance(found, CandidateGraph)
     assert len(found.edges) == 0

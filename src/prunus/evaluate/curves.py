@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from prunus.kernels.neighbours import within
-from prunus.model import Floats, Ints, Label, Skeleton
+from prunus.model import Floats, Ints, Label, Lines, Skeleton
 
 SPACING = 0.01
 """Both trees are sampled every so many metres along their edges."""
@@ -19,14 +19,9 @@ def curve_measures(predicted: Skeleton, truth: Skeleton) -> dict[str, float]:
     Both skeletons in one frame. NaN where a tree has none of the label.
     """
     found, true = sampled(predicted), sampled(truth)
-    measures = {}
+    measures: dict[str, float] = {}
     for name, label in [("geometry", None), *((label.word, label) for label in Label)]:
-        ours, theirs = _of(found, label), _of(true, label)
-        recall, precision = covered(theirs, ours), covered(ours, theirs)
-        measures[f"{name}_recall"] = recall
-        measures[f"{name}_precision"] = precision
-        both = recall + precision
-        measures[f"{name}_f1"] = 2 * recall * precision / both if both > 0 else both
+        measures |= _measured(name, _of(found, label), _of(true, label))
     return measures
 
 
@@ -38,13 +33,31 @@ def sampled(skeleton: Skeleton) -> tuple[Floats, Ints]:
 
 def sampled_rows(skeleton: Skeleton) -> tuple[Floats, Ints]:
     """Points (S, 3) every `SPACING` along the edges, and the row (S,) in which each edge ends."""
-    rows = np.arange(1, len(skeleton))
-    steps = np.maximum(1, np.rint(skeleton.lengths[rows] / SPACING).astype(np.int64))
-    row = np.repeat(rows, steps)
-    within_edge = np.arange(len(row)) - np.repeat(np.cumsum(steps) - steps, steps)
+    points, edge = sampled_lines(Lines(skeleton.xyz, skeleton.edges))
+    return points, edge + 1
+
+
+def sampled_lines(lines: Lines) -> tuple[Floats, Ints]:
+    """Points (S, 3) every `SPACING` along the edges, and the edge (S,) of each."""
+    ends = lines.xyz[lines.edges]
+    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    steps = np.maximum(1, np.rint(lengths / SPACING).astype(np.int64))
+    edge = np.repeat(np.arange(len(ends)), steps)
+    within_edge = np.arange(len(edge)) - np.repeat(np.cumsum(steps) - steps, steps)
     share = ((within_edge + 0.5) / np.repeat(steps, steps))[:, None]
-    points = skeleton.xyz[row] * share + skeleton.xyz[skeleton.parent[row]] * (1 - share)
-    return points, row
+    return ends[edge, 1] * share + ends[edge, 0] * (1 - share), edge
+
+
+def line_measures(predicted: Lines, truth: Lines) -> dict[str, float]:
+    """`geometry_recall`, `_precision` and `_f1` of lines without labels, both in one frame."""
+    return _measured("geometry", sampled_lines(predicted)[0], sampled_lines(truth)[0])
+
+
+def _measured(name: str, found: Floats, true: Floats) -> dict[str, float]:
+    recall, precision = covered(true, found), covered(found, true)
+    both = recall + precision
+    f1 = 2 * recall * precision / both if both > 0 else both
+    return {f"{name}_recall": recall, f"{name}_precision": precision, f"{name}_f1": f1}
 
 
 def covered(points: Floats, by: Floats) -> float:

@@ -39,9 +39,12 @@ def is_free(on_path: Words, tip: int, d: int, nodes: Words, u: int) -> bool:
 @kernel
 def reward(graph: GraphTable, entered_by: int, d: int, label: int) -> float:
     """Reward of (d, label) after the entry `entered_by` (eq. Reward)."""
-    if entered_by >= 0 and entered_by % LABELS == label:
-        return graph.gain[d, label] - graph.turn[graph.pair_of[entered_by // LABELS] + d]
-    return graph.gain[d, label]
+    if entered_by < 0:
+        return graph.gain[d, label]
+    change = graph.change[entered_by % LABELS, label]
+    if change < 0:
+        return graph.gain[d, label]
+    return graph.gain[d, label] - graph.turn[change, graph.pair_of[entered_by // LABELS] + d]
 
 
 @kernel

@@ -1,14 +1,15 @@
-"""Improve a finished skeleton by hanging one node at a time elsewhere.
+"""Improve a finished skeleton by hanging nodes elsewhere.
 
 The skeleton is completed to a tree over all reachable nodes. For such a tree the best legal labels,
 and the branches better left out, follow exactly from the leaves down to the base: `worth[n, l]` is
 the best sum of rewards above node n when the edge into n has label l, worked out by walking the
-grammar automaton over the children of n. A move hangs a node on another neighbour; only the two
-ways down to the base change, and no farther than worth changes. `may_end` says where a branch may
-end: anywhere for the best SkelScore, at tips alone for a union of base-to-tip paths.
+grammar automaton over the children of n. A move hangs one node, or a few at once, on other
+neighbours; only the ways down to the base change, and no farther than worth changes. `may_end` says
+where a branch may end: anywhere for the best score, at tips alone for a union of base-to-tip paths.
 """
 
 from heapq import heappop, heappush
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,23 @@ ROOT = -2
 """In place of the edge into a node: the node is the base."""
 NEVER = -1e18
 """Worth of what the rules forbid."""
+
+
+class Room(NamedTuple):
+    """Room to work in: sums that end in each grammar state (S,), and what a move has changed.
+
+    nodes, edges, entered: what a move hangs elsewhere, by which edges, and by which before;
+    changed, before: nodes whose worth it changed, and what that was.
+    """
+
+    sums: Floats
+    grown: Floats
+    found: Floats
+    changed: Ints
+    before: Floats
+    nodes: Ints
+    edges: Ints
+    entered: Ints
 
 
 @kernel
@@ -74,16 +92,14 @@ def find_worth(
     may_end: Bools,
     graph: GraphTable,
     grammar: GrammarTable,
-    sums: Floats,
-    grown: Floats,
-    found: Floats,
+    room: Room,
 ) -> bool:
-    """Write worth (L,) of node n under each incoming label into `found`; whether it changed.
+    """Write worth (L,) of node n under each incoming label into `room.found`; whether it changed.
 
-    `sums` and `grown` (S,) are room for the best sum that ends in each grammar state, before and
-    after a child. The states of one incoming label stand together, the fresh one first.
+    The states of one incoming label stand together, the fresh one first.
     """
     head, gain, following, fresh = graph.head, graph.gain, grammar.following, grammar.fresh
+    sums, grown = room.sums, room.grown
     S, L = following.shape
     enters = into[n]
     changed = False
@@ -101,8 +117,8 @@ def find_worth(
                 grown[state] = sums[state]
             for below in range(L):
                 brings = gain[d, below] + worth[child, below]
-                if enters != ROOT and below == label:
-                    brings -= graph.turn[graph.pair_of[enters] + d]
+                if enters != ROOT and graph.change[label, below] >= 0:
+                    brings -= graph.turn[graph.change[label, below], graph.pair_of[enters] + d]
                 if brings <= NEVER / 2:
                     continue
                 for state in range(start, stop):
@@ -114,7 +130,7 @@ def find_worth(
         best = sums[start] if may_end[n] else NEVER
         for state in range(start + 1, stop):
             best = max(best, sums[state])
-        found[label] = best
+        room.found[label] = best
         changed |= best != worth[n, label]
     return changed
 
@@ -136,59 +152,123 @@ def leads_nowhere(worth: Floats, node: int) -> bool:
     return True
 
 
+class Tree(NamedTuple):
+    """A complete tree: base, edge into each node (N,), worth (N, L), where it may end (N,)."""
+
+    base: int
+    into: Ints
+    worth: Floats
+    may_end: Bools
+
+
+@kernel
+def is_tree(nodes: Ints, into: Ints, tail: Ints) -> bool:
+    """Whether from each of the nodes a way leads down to the base."""
+    for start in nodes:
+        n, steps = start, 0
+        while into[n] != ROOT:
+            n = tail[into[n]]
+            steps += 1
+            if steps > len(into):
+                return False
+    return True
+
+
+@kernel
+def try_move(k: int, tree: Tree, graph: GraphTable, grammar: GrammarTable, room: Room) -> bool:
+    """Hang the first k of `room.nodes` by `room.edges` at once; undone unless that gains."""
+    base, into, worth, may_end = tree
+    total = worth[base, 0]
+    for i in range(k):
+        room.entered[i] = into[room.nodes[i]]
+        into[room.nodes[i]] = room.edges[i]
+    count = 0
+    fine = is_tree(room.nodes[:k], into, graph.tail)
+    for start in range(3 * k if fine else 0):
+        n = room.nodes[start // 3]
+        if start % 3 > 0:
+            n = graph.tail[into[n] if start % 3 == 1 else room.entered[start // 3]]
+        while find_worth(n, into, worth, may_end, graph, grammar, room):
+            room.changed[count] = n
+            room.before[count] = worth[n]
+            worth[n] = room.found
+            count += 1
+            if n == base:
+                break
+            n = graph.tail[into[n]]
+    if fine and worth[base, 0] > total:
+        return True
+    for slot in range(count - 1, -1, -1):
+        worth[room.changed[slot]] = room.before[slot]
+    for i in range(k):
+        into[room.nodes[i]] = room.entered[i]
+    return False
+
+
+@kernel
+def edge_between(one: int, other: int, graph: GraphTable) -> int:
+    """The directed edge from a node to another; -1 where there is none."""
+    for d in range(graph.out_start[one], graph.out_start[one + 1]):
+        if graph.head[d] == other:
+            return d
+    return -1
+
+
+@kernel
+def try_all_with(d: int, tree: Tree, graph: GraphTable, grammar: GrammarTable, room: Room) -> bool:
+    """Hang the head of edge `d` on its tail, or trade places there; whether that gained.
+
+    Another child of the tail then hangs where the head hung before, or on the head.
+    """
+    node, onto = graph.head[d], graph.tail[d]
+    nodes, edges = room.nodes, room.edges
+    before = graph.tail[tree.into[node]]
+    nodes[0], edges[0] = node, d
+    if try_move(1, tree, graph, grammar, room):
+        return True
+    for e in range(graph.out_start[onto], graph.out_start[onto + 1]):
+        nodes[1] = graph.head[e]
+        if tree.into[nodes[1]] != e or nodes[1] == node:
+            continue
+        for place in (before, node):
+            edges[1] = edge_between(place, nodes[1], graph)
+            if edges[1] >= 0 and try_move(2, tree, graph, grammar, room):
+                return True
+    return False
+
+
 @kernel
 def climb(
-    into: Ints,
-    order: Ints,
-    may_end: Bools,
-    graph: GraphTable,
-    grammar: GrammarTable,
-    sweeps: int,
-) -> Floats:
-    """Try every move in turn until none gains, at most so many sweeps; the worth (N, L) reached.
+    into: Ints, order: Ints, may_end: Bools, graph: GraphTable, grammar: GrammarTable, sweeps: int
+) -> tuple[Floats, Floats]:
+    """Try every move in turn, sweep after sweep, until none gains.
 
-    `into` (N,) is changed in place; `order` lists its nodes, base first.
+    `into` (N,) is changed in place; `order` lists its nodes, base first. Returns the worth (N, L)
+    reached, and that of the base before the first sweep and after each.
     """
-    tail, head = graph.tail, graph.head
     S, L = grammar.following.shape
-    worth = np.full((len(into), L), NEVER)
-    sums, grown, found = np.empty(S), np.empty(S), np.empty(L)
-    for slot in range(len(order) - 1, -1, -1):
-        find_worth(order[slot], into, worth, may_end, graph, grammar, sums, grown, found)
-        worth[order[slot]] = found
+    N = len(into)
+    worth = np.full((N, L), NEVER)
+    two = np.empty(2, np.int64)
+    room = Room(
+        np.empty(S), np.empty(S), np.empty(L), np.empty(8 * N + 8, np.int64),
+        np.empty((8 * N + 8, L)), two, two.copy(), two.copy(),
+    )  # fmt: skip
     base = order[0]
-    changed = np.empty(2 * len(into) + 2, np.int64)
-    before = np.empty((2 * len(into) + 2, L))
-    for _ in range(sweeps):
-        gained = False
-        for d in range(len(tail)):
-            node, onto = head[d], tail[d]
-            old = into[node]
-            if old < 0 or old == d or into[onto] == OUTSIDE or leads_nowhere(worth, node):
+    tree = Tree(base, into, worth, may_end)
+    for slot in range(len(order) - 1, -1, -1):
+        find_worth(order[slot], into, worth, may_end, graph, grammar, room)
+        worth[order[slot]] = room.found
+    history = np.empty(sweeps + 1)
+    history[0] = worth[base, 0]
+    for sweep in range(1, sweeps + 1):
+        for d in range(len(graph.tail)):
+            node, onto = graph.head[d], graph.tail[d]
+            if into[node] < 0 or into[node] == d or into[onto] == OUTSIDE:
                 continue
-            if hangs_on(onto, node, into, tail):
-                continue
-            total = worth[base, 0]
-            into[node] = d
-            count = 0
-            for start in (node, tail[old], onto):
-                n = start
-                while True:
-                    if not find_worth(n, into, worth, may_end, graph, grammar, sums, grown, found):
-                        break
-                    changed[count] = n
-                    before[count] = worth[n]
-                    worth[n] = found
-                    count += 1
-                    if n == base or start == node:
-                        break
-                    n = tail[into[n]]
-            if worth[base, 0] > total:
-                gained = True
-                continue
-            into[node] = old
-            for slot in range(count - 1, -1, -1):
-                worth[changed[slot]] = before[slot]
-        if not gained:
-            break
-    return worth
+            if not leads_nowhere(worth, node) and not hangs_on(onto, node, into, graph.tail):
+                try_all_with(d, tree, graph, grammar, room)
+        history[sweep] = worth[base, 0]
+        if history[sweep] == history[sweep - 1]:
+            return worth, history[: sweep + 1].copy()
+    return worth, history

@@ -26,7 +26,9 @@ class GraphTable(NamedTuple):
     """The directed edges d, sorted by tail, and what each brings.
 
     tail, head (D,); out_start (N + 1,); gain (D, L) EdgeScore less GrowPenalty under each label;
-    turn: TurnPenalty of d followed by d' at pair_of[d] + d'; key (D, L) random 64-bit numbers.
+    turn (C, pairs): the cost of d followed by d' at pair_of[d] + d', for each kind of change;
+    change (L, L): the kind that it is to go on from one label with another, -1 = free; key (D, L)
+    random 64-bit numbers.
     """
 
     tail: Ints
@@ -35,6 +37,7 @@ class GraphTable(NamedTuple):
     gain: Floats
     turn: Floats
     pair_of: Ints
+    change: Ints
     key: Words
 
 

@@ -21,9 +21,10 @@ from numpy.typing import NDArray
 from prunus.errors import PrunusError
 from prunus.io.scans import ScannedTree, read_scan
 from prunus.kernels.neighbours import within
-from prunus.learn.labels import TrueWood, counting_rows, edge_labels
+from prunus.learn.labels import TrueWood, edge_labels
+from prunus.measure import counting_rows
 from prunus.model import Bools, CandidateGraph, Ints, Kind, PointCloud, Superpoints
-from prunus.params import Parameters
+from prunus.params import Cover
 from prunus.stages.candidates import find_candidates
 from prunus.stages.context import Context, Inputs, context_of, description
 from prunus.stages.images import edge_images
@@ -70,9 +71,9 @@ def split_by_tree(folders: list[Path], rng: np.random.Generator) -> list[list[Pa
     return [sorted(order[:train]), sorted(order[train:-test]), sorted(order[-test:])]
 
 
-def examples_of(folders: list[Path], seed: int, jobs: int) -> Iterator[list[Example]]:
-    """The examples of each scan, in order."""
-    make = partial(examples_in, seed=seed)
+def examples_of(folders: list[Path], seed: int, jobs: int, cover: Cover) -> Iterator[list[Example]]:
+    """The examples of each scan, in order; superpoints as the network will meet them."""
+    make = partial(examples_in, seed=seed, cover=cover)
     if jobs == 1:
         yield from map(make, folders)
         return
@@ -80,12 +81,12 @@ def examples_of(folders: list[Path], seed: int, jobs: int) -> Iterator[list[Exam
         yield from pool.map(make, folders)
 
 
-def examples_in(folder: Path, seed: int) -> list[Example]:
-    """The examples of one scan: a function of the scan and the seed."""
+def examples_in(folder: Path, seed: int, cover: Cover) -> list[Example]:
+    """The examples of one scan: a function of the scan, the seed and how superpoints are chosen."""
     scan = read_scan(folder)
     rng = np.random.default_rng([seed, *folder.name.encode()])
     wood = true_wood(scan)
-    return [one for _ in range(GRAPHS) for one in _examples(scan, wood, rng)]
+    return [one for _ in range(GRAPHS) for one in _examples(scan, wood, rng, cover)]
 
 
 def true_wood(scan: ScannedTree) -> TrueWood:
@@ -98,13 +99,15 @@ def true_wood(scan: ScannedTree) -> TrueWood:
     return TrueWood.of(scan.trees, counts)
 
 
-def _examples(scan: ScannedTree, wood: TrueWood, rng: np.random.Generator) -> Iterator[Example]:
+def _examples(
+    scan: ScannedTree, wood: TrueWood, rng: np.random.Generator, cover: Cover
+) -> Iterator[Example]:
     kinds = VIEWS[rng.choice(len(VIEWS), p=SHARES)]
     seen = scan.xyz[np.isin(scan.kind, kinds)]
     if len(seen) < 1000:
         return
     cloud = PointCloud.from_xyz(seen)
-    graph = find_candidates(find_superpoints(_drawn(cloud, rng), Parameters().superpoints, rng))
+    graph = find_candidates(find_superpoints(_drawn(cloud, rng), cover, rng))
     if len(graph.edges) < 10:
         return
     category = edge_labels(cloud.to_input.apply(graph.xyz), graph.edges, wood)
@@ -121,7 +124,8 @@ def _seen_again(graph: CandidateGraph, cloud: PointCloud) -> CandidateGraph:
     """The same edges in another draw of the same cloud."""
     under = graph.superpoints
     start, members = within(cloud.xyz, under.xyz, under.radius)
-    return CandidateGraph(Superpoints(cloud, under.xyz, start, members, under.radius), graph.edges)
+    seen = Superpoints(cloud, under.xyz, start, members, under.radius, under.wood)
+    return CandidateGraph(seen, graph.edges)
 
 
 def example_of(graph: CandidateGraph, category: Ints) -> Example:

@@ -32,12 +32,6 @@ LONGEST = (1.5, 0.04)
 """The way along the wood is at most so many times the edge, and so many metres more."""
 SHORTEST = 0.5
 """The way along the wood is at least so many times the edge."""
-COUNTS = 0.10
-"""Shorter branches do not count, metres."""
-SEEN = 0.05
-"""Wood is seen where a point of its branch is within so many metres."""
-HALF = 0.5
-"""Branches of which less is seen do not count."""
 SAMPLES = np.linspace(0, 1, 7)[:, None]
 """An edge is looked at in so many places."""
 
@@ -80,21 +74,6 @@ class TrueWood:
             np.concatenate([own + start for own, start in zip(numbers, first, strict=True)]),
             np.flatnonzero(np.concatenate(counts)),
         )
-
-
-def counting_rows(tree: Skeleton, points: Floats, branch: Ints) -> Bools:
-    """Which rows (M,) of a tree count, given the points (P, 3) of it and their branches (P,)."""
-    counting = np.zeros(len(tree), np.bool_)
-    for number, one in enumerate(branches(tree)):
-        rows = one.rows[1:]
-        start, _ = within(points[branch == number], tree.xyz[rows], SEEN)
-        seen = np.flatnonzero(np.diff(start))
-        if len(seen) == 0:
-            continue
-        held = rows[seen[0] : seen[-1] + 1]
-        long = tree.lengths[held].sum() >= COUNTS - 1e-9
-        counting[held] = long and len(seen) >= HALF * len(held)
-    return counting
 
 
 def categories(tree: Skeleton) -> Ints:

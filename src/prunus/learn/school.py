@@ -14,6 +14,7 @@ from prunus.io.safely import write_bytes
 from prunus.io.scans import scans_in
 from prunus.learn.examples import Example, examples_of, split_by_tree
 from prunus.learn.tables import measures
+from prunus.params import Parameters
 
 Item = TypeVar("Item")
 Watch = Callable[[Iterable[Item], str, int], Iterable[Item]]
@@ -39,9 +40,10 @@ def school(
         raise PrunusError("training needs torch and onnx: pip install 'prunus[train]'") from error
     rng = np.random.default_rng(seed)
     folders = split_by_tree(scans_in(folder), rng)
+    cover = (Parameters.paper() if edge_net == "paper" else Parameters()).superpoints
     sets = []
     for names, what in zip(folders, ("training", "validation", "test"), strict=True):
-        made = watch(examples_of(names, seed, jobs), f"{what} examples", len(names))
+        made = watch(examples_of(names, seed, jobs, cover), f"{what} examples", len(names))
         sets.append([example for of_scan in made for example in of_scan])
     training, validation, test = sets
     recipe = train.RECIPES[edge_net]()

@@ -3,13 +3,16 @@
 from prunus.measure.branches import Branch, branch_of_rows, branches, lengths_by_label
 from prunus.measure.leaders import Leader, leaders
 from prunus.measure.remarks import remarks
+from prunus.measure.seen import counting_rows, shown
 
 __all__ = [
     "Branch",
     "Leader",
     "branch_of_rows",
     "branches",
+    "counting_rows",
     "leaders",
     "lengths_by_label",
     "remarks",
+    "shown",
 ]

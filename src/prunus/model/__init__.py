@@ -8,7 +8,7 @@ from prunus.model.arrays import Bools, Floats, Ints
 from prunus.model.cloud import FRAMES, PointCloud, RigidMotion
 from prunus.model.graph import CandidateGraph, ScoredGraph, SeededGraph, Superpoints
 from prunus.model.kind import Kind
-from prunus.model.skeleton import Label, Skeleton
+from prunus.model.skeleton import Label, Lines, Skeleton
 
 __all__ = [
     "FRAMES",
@@ -18,6 +18,7 @@ __all__ = [
     "Ints",
     "Kind",
     "Label",
+    "Lines",
     "PointCloud",
     "RigidMotion",
     "ScoredGraph",

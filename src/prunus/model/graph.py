@@ -15,7 +15,8 @@ class Superpoints:
     """Superpoints xyz (N, 3) and their points.
 
     Superpoint n has the points `members[start[n]:start[n + 1]]` of the cloud: those within
-    `radius` (r_super, metres) of it. Balls overlap, so membership is many-to-many.
+    `radius` (r_super, metres) of it. Balls overlap, so membership is many-to-many. `wood` (N,) are
+    the metres of branch that it stands for, none counted twice.
     """
 
     cloud: PointCloud
@@ -23,11 +24,13 @@ class Superpoints:
     start: Ints
     members: Ints
     radius: float
+    wood: Floats
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "xyz", frozen(self.xyz, np.float64, (None, 3)))
         object.__setattr__(self, "start", frozen(self.start, np.int64, (len(self.xyz) + 1,)))
         object.__setattr__(self, "members", frozen(self.members, np.int64, (None,)))
+        object.__setattr__(self, "wood", frozen(self.wood, np.float64, (len(self.xyz),)))
 
     def __len__(self) -> int:
         return len(self.xyz)
@@ -36,7 +39,8 @@ class Superpoints:
     def of_nodes(cls, cloud: PointCloud, radius: float) -> Superpoints:
         """Every point its own superpoint: for graphs that come from elsewhere."""
         count = len(cloud)
-        return cls(cloud, cloud.xyz, np.arange(count + 1), np.arange(count), radius)
+        one_each = np.arange(count + 1), np.arange(count)
+        return cls(cloud, cloud.xyz, *one_each, radius, np.full(count, radius))
 
     def points_near(self, nodes: Ints) -> Bools:
         """Which points (P,) belong to any of these superpoints."""
@@ -70,15 +74,28 @@ class CandidateGraph:
 
 @dataclass(frozen=True, eq=False)
 class ScoredGraph:
-    """Confidence (E,) in [0, 1] for each candidate edge, and the name of who gave it."""
+    """Confidence (E,) in [0, 1] for each candidate edge, and the name of who gave it.
+
+    `category` (E, 5) is the probability of trunk, support, leader, side branch and other wood,
+    should the edge be valid; (E, 0) where the scorer tells none.
+    """
 
     candidates: CandidateGraph
     confidence: Floats
+    category: Floats
     scorer: str
 
     def __post_init__(self) -> None:
-        shape = (len(self.candidates.edges),)
-        object.__setattr__(self, "confidence", frozen(self.confidence, np.float64, shape))
+        size = len(self.candidates.edges)
+        object.__setattr__(self, "confidence", frozen(self.confidence, np.float64, (size,)))
+        object.__setattr__(self, "category", frozen(self.category, np.float64, (size, None)))
+
+    @classmethod
+    def of_confidence(
+        cls, candidates: CandidateGraph, confidence: Floats, scorer: str
+    ) -> ScoredGraph:
+        """The graph of a scorer that tells no categories."""
+        return cls(candidates, confidence, np.zeros((len(candidates.edges), 0)), scorer)
 
     @property
     def xyz(self) -> Floats:

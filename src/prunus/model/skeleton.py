@@ -41,6 +41,14 @@ class Label(IntEnum):
 
 
 @dataclass(frozen=True, eq=False)
+class Lines:
+    """Points (N, 3), metres, and edges (E, 2) between them: what any skeleton is."""
+
+    xyz: Floats
+    edges: Ints
+
+
+@dataclass(frozen=True, eq=False)
 class Skeleton:
     """A tree of M nodes: row 0 is the base, and every other row hangs on an earlier one.
 
@@ -134,6 +142,20 @@ class Skeleton:
     def with_radius(self, radius: ArrayLike) -> Skeleton:
         """The same skeleton with other radii (M,)."""
         return replace(self, radius=np.asarray(radius, np.float64))
+
+    def part(self, kept: Bools) -> Skeleton:
+        """The tree of these rows (M,), whose parents are among them save that of the first."""
+        rows = np.flatnonzero(kept)
+        parent = (np.cumsum(kept) - 1)[self.parent[rows]]
+        parent[0] = -1
+        return Skeleton(
+            self.xyz[rows],
+            parent,
+            self.label[rows],
+            self.confidence[rows],
+            self.radius[rows],
+            self.superpoint[rows],
+        )
 
     def moved(self, motion: RigidMotion) -> Skeleton:
         """The same skeleton in another frame."""

@@ -1,6 +1,19 @@
-"""The population-based search: score -> eligible -> potential -> resample, K candidates at once."""
+"""The search for the best skeleton.
 
-from prunus.search.population import SearchResult, search
+As in the paper: score -> eligible -> potential -> resample, K candidates at once (population).
+Beyond it: a score learned from simulated trees, climbed from the cheapest tree (learned).
+"""
+
+from prunus.search.learned import learned_score_of, search_learned, shipped_score
+from prunus.search.population import search
+from prunus.search.result import SearchResult
 from prunus.search.score import skel_score
 
-__all__ = ["SearchResult", "search", "skel_score"]
+__all__ = [
+    "SearchResult",
+    "learned_score_of",
+    "search",
+    "search_learned",
+    "shipped_score",
+    "skel_score",
+]

@@ -2,29 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from prunus.kernels.propose import propose
 from prunus.kernels.ranks import average_ranks
 from prunus.kernels.resample import advance, merge_equal, resample
-from prunus.kernels.tables import ABSENT, BASE, LABELS, GraphTable, Population
-from prunus.model import Floats, Ints, SeededGraph, Skeleton
+from prunus.kernels.tables import ABSENT, BASE, GraphTable, Population
+from prunus.model import Ints, SeededGraph
 from prunus.params import Parameters
 from prunus.search.eligible import grammar_table
 from prunus.search.potential import path_priors
 from prunus.search.refine import refine
+from prunus.search.result import SearchResult, as_skeleton
 from prunus.search.score import graph_table
-
-
-@dataclass(frozen=True, eq=False)
-class SearchResult:
-    """The skeleton, its SkelScore, and the best score (I,) of the population in each iteration."""
-
-    skeleton: Skeleton
-    score: float
-    history: Floats
 
 
 def search(
@@ -60,11 +50,13 @@ def search(
         population = advance(graph, grammar, population, proposals, stands, live, copies)
     if params.search.refine:
         anywhere = np.ones(len(best), np.bool_)
-        best, best_score = refine(best, graph, grammar, cost, anywhere)
+        best, climbed = refine(best, graph, grammar, cost, anywhere)
+        best_score = float(climbed[-1])
     if params.search.refine and end_at_tips:
         at_tips = np.isin(np.arange(len(best)), [seeded.base, *seeded.tips])
-        best, best_score = refine(best, graph, grammar, cost, at_tips)
-    return SearchResult(_skeleton(best, graph, seeded), best_score, np.array(history))
+        best, climbed = refine(best, graph, grammar, cost, at_tips)
+        best_score = float(climbed[-1])
+    return SearchResult(as_skeleton(best, graph, seeded), best_score, np.array(history))
 
 
 def _bare(seeded: SeededGraph, graph: GraphTable, K: int) -> Population:
@@ -91,35 +83,3 @@ def _words(members: Ints, size: int) -> np.ndarray[tuple[int, int], np.dtype[np.
     bits = np.zeros(-(-max(size, 1) // 64) * 64, np.uint8)
     bits[members] = 1
     return np.packbits(bits, bitorder="little").view("<u8").astype(np.uint64)[None, :]
-
-
-def _skeleton(
-    entry: np.ndarray[tuple[int], np.dtype[np.int32]], graph: GraphTable, seeded: SeededGraph
-) -> Skeleton:
-    """The skeleton of a row of entries, parents before children."""
-    below: dict[int, list[int]] = {}
-    for child in np.flatnonzero(entry >= 0).tolist():
-        below.setdefault(int(graph.tail[entry[child] // LABELS]), []).append(child)
-    nodes, parent, label = [seeded.base], [-1], [0]
-    for row, node in enumerate(nodes):
-        for child in below.get(node, []):
-            nodes.append(child)
-            parent.append(row)
-            label.append(int(entry[child] % LABELS))
-    label[0] = label[1] if len(label) > 1 else 0
-    return Skeleton.build(
-        seeded.xyz[nodes],
-        parent,
-        label,
-        confidence=_confidence(nodes, parent, seeded),
-        superpoint=nodes,
-    )
-
-
-def _confidence(nodes: list[int], parent: list[int], seeded: SeededGraph) -> Floats:
-    of_pair = {
-        (int(i), int(j)): c for (i, j), c in zip(seeded.edges, seeded.confidence, strict=True)
-    }
-    ends = [(nodes[p], nodes[row]) for row, p in enumerate(parent)]
-    known = [of_pair[min(pair), max(pair)] for pair in ends[1:]]
-    return np.array([np.nan, *known])

@@ -33,7 +33,7 @@ def path_priors(
             into,
             cost,
             score,
-            graph.turn,
+            graph.turn[0],
             graph.pair_of,
             priors.on_path[row],
             priors.after[row],

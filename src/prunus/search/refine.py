@@ -1,4 +1,4 @@
-"""Beyond the paper: a skeleton improved by hanging one node at a time elsewhere."""
+"""Beyond the paper: a skeleton improved by hanging a node, or two, elsewhere."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ Entries = NDArray[np.int32]
 
 def refine(
     entry: Entries, graph: GraphTable, grammar: GrammarTable, cost: Floats, may_end: Bools
-) -> tuple[Entries, float]:
-    """The skeleton (N,) that no move improves, and its SkelScore.
+) -> tuple[Entries, Floats]:
+    """The skeleton (N,) that no move improves, and the score before and after each sweep (I,).
 
     `may_end` (N,) says at which nodes a branch may end; the base is always one. Where it holds all
     ends of the skeleton given, the one returned is at least as good. `cost` (D,): Len (1 - Conf).
@@ -27,7 +27,7 @@ def refine(
     into = np.where(entry >= 0, entry // LABELS, OUTSIDE)
     into[entry == BASE] = ROOT
     order = complete(into, graph, cost)
-    worth = climb(into, order, may_end, graph, grammar, SWEEPS)
+    worth, history = climb(into, order, may_end, graph, grammar, SWEEPS)
     chosen = np.full_like(entry, ABSENT)
     base = int(order[0])
     chosen[base] = BASE
@@ -39,7 +39,7 @@ def refine(
             child = int(graph.head[d])
             chosen[child] = d * LABELS + below
             waiting.append((child, below))
-    return chosen, float(worth[base, 0])
+    return chosen, history
 
 
 def _best_children(
@@ -61,8 +61,8 @@ def _best_children(
         after = dict(best)
         for below in range(grammar.following.shape[1]):
             brings = graph.gain[d, below] + worth[child, below]
-            if below == label:
-                brings -= graph.turn[graph.pair_of[into[node]] + d]
+            if label >= 0 and graph.change[label, below] >= 0:
+                brings -= graph.turn[graph.change[label, below], graph.pair_of[into[node]] + d]
             if brings <= NEVER / 2:
                 continue
             for state, (total, pairs) in best.items():

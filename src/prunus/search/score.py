@@ -9,6 +9,7 @@ from prunus.kernels.angles import grow_angle, turn_penalties
 from prunus.kernels.tables import GraphTable
 from prunus.model import Floats, Label, SeededGraph, Skeleton
 from prunus.params import Grow, Parameters, Turn
+from prunus.search.directed import Directed
 
 EXACT = 2.0**32
 """Rewards are rounded to 1 / EXACT, so that a sum does not depend on the order of its terms."""
@@ -54,29 +55,25 @@ def graph_table(
     seeded: SeededGraph, params: Parameters, rng: np.random.Generator
 ) -> tuple[GraphTable, Floats, Floats]:
     """The directed edges with their rewards; EdgeScore (D,) and Len (1 - Conf) (D,) beside it."""
-    xyz, confidence = seeded.xyz, np.tile(seeded.confidence, 2)
-    tail, head = np.concatenate([seeded.edges, seeded.edges[:, ::-1]]).T
-    order = np.lexsort([head, tail])
-    tail, head, confidence = tail[order], head[order], confidence[order]
-    out_start = np.searchsorted(tail, np.arange(len(xyz) + 1))
-    vector = xyz[head] - xyz[tail]
-    length = np.linalg.norm(vector, axis=1)
-    score = exact(edge_score(length, confidence, params.confidence.alpha_conf))
-    penalty = [grow_penalty(vector, label, params.grow) for label in SEARCHED]
-    pair_start = np.concatenate([[0], np.cumsum(np.diff(out_start)[head])])
+    ways = Directed.of(seeded)
+    confidence = seeded.confidence[ways.edge]
+    score = exact(edge_score(ways.length, confidence, params.confidence.alpha_conf))
+    penalty = [grow_penalty(ways.vector, label, params.grow) for label in SEARCHED]
     turn = turn_penalties(
-        vector, head, out_start, pair_start, params.turn.theta, params.turn.c, params.turn.p
-    )
+        ways.vector, ways.head, ways.out_start, ways.pair_start,
+        params.turn.theta, params.turn.c, params.turn.p,
+    )  # fmt: skip
     table = GraphTable(
-        tail,
-        head,
-        out_start,
+        ways.tail,
+        ways.head,
+        ways.out_start,
         exact(score[:, None] - np.stack(penalty, axis=1)),
-        turn,
-        pair_start[:-1] - out_start[head],
-        rng.integers(0, 2**64, (len(tail), len(SEARCHED)), np.uint64),
+        turn[None],
+        ways.pair_of,
+        np.where(np.eye(len(SEARCHED), dtype=np.bool_), 0, -1),
+        rng.integers(0, 2**64, (len(ways.tail), len(SEARCHED)), np.uint64),
     )
-    return table, score, length * (1 - confidence)
+    return table, score, ways.length * (1 - confidence)
 
 
 def exact(values: Floats) -> Floats:

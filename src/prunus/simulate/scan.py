@@ -53,6 +53,11 @@ class Scan:
     @property
     def truth(self) -> Skeleton:
         """The target's true skeleton, from the lowest point of its trunk that the scan holds."""
+        return self.row.trees[0].part(self.truth_rows)
+
+    @property
+    def truth_rows(self) -> Bools:
+        """Which rows (M,) of the target tree stand in `truth`."""
         tree = self.row.trees[0]
         seen = np.unique(self.node[self.tree == 0])
         trunk = np.flatnonzero(tree.label == Label.TRUNK)
@@ -101,16 +106,13 @@ def scan_row(row: Row, rng: np.random.Generator, settings: ScanSettings) -> Scan
                      rng, settings)  # fmt: skip
 
 
-def above(tree: Skeleton, row: int) -> Skeleton:
-    """The part of a tree that hangs on a row, which becomes its base."""
+def above(tree: Skeleton, row: int) -> Bools:
+    """Which rows (M,) of a tree hang on a row, that one included."""
     kept = np.zeros(len(tree), np.bool_)
     kept[row] = True
     for child in range(row + 1, len(tree)):
         kept[child] = kept[tree.parent[child]]
-    number = np.cumsum(kept) - 1
-    parent = number[tree.parent[kept]]
-    parent[0] = -1
-    return Skeleton.build(tree.xyz[kept], parent, tree.label[kept], radius=tree.radius[kept])
+    return kept
 
 
 def _poses(rng: np.random.Generator, rig: RigSettings) -> list[RigidMotion]:

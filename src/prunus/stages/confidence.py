@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,19 +29,27 @@ class EdgeScorer(Protocol):
         """Conf(e) for every candidate edge."""
 
 
+@runtime_checkable
+class CategoryScorer(EdgeScorer, Protocol):
+    """One who also tells what wood an edge is: the learned score asks for that."""
+
+    def judge(self, candidates: CandidateGraph) -> tuple[Floats, Floats]:
+        """Conf(e), and the probability (E, 5) of each category should the edge be valid."""
+
+
 def score_edges(candidates: CandidateGraph, scorer: EdgeScorer, params: Confidence) -> ScoredGraph:
     """The candidates with the confidence that the scorer gives, less the hopeless ones.
 
     A branch with a gap has poor edges, worth crossing for what lies beyond; but an edge that is
     all but certainly none would tie another tree to this one for a small price.
     """
-    confidence = scorer(candidates)
+    if isinstance(scorer, CategoryScorer):
+        confidence, category = scorer.judge(candidates)
+    else:
+        confidence, category = scorer(candidates), np.zeros((len(candidates.edges), 0))
     kept = confidence >= (scorer.floor if params.floor == "auto" else params.floor)
-    return ScoredGraph(
-        CandidateGraph(candidates.superpoints, candidates.edges[kept]),
-        confidence[kept],
-        scorer.name,
-    )
+    left = CandidateGraph(candidates.superpoints, candidates.edges[kept])
+    return ScoredGraph(left, confidence[kept], category[kept], scorer.name)
 
 
 @dataclass(frozen=True)

@@ -19,13 +19,4 @@ def drop_stubs(skeleton: Skeleton, min_length: float) -> Skeleton:
     for branch in branches(skeleton, TIP_LABEL):
         if branch.length < min_length:
             kept[branch.rows[1:]] = False
-    new_row = np.cumsum(kept) - 1
-    parent = np.where(skeleton.parent >= 0, new_row[skeleton.parent], -1)
-    return Skeleton(
-        skeleton.xyz[kept],
-        parent[kept],
-        skeleton.label[kept],
-        skeleton.confidence[kept],
-        skeleton.radius[kept],
-        skeleton.superpoint[kept],
-    )
+    return skeleton.part(kept)

@@ -1,0 +1,108 @@
+"""Edit distances between a skeleton S and its correction S* (sec. Results; measures.md A)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from prunus.model import Label, Skeleton
+
+Pair = tuple[int, int]
+ONE_A_TREE = (Label.TRUNK, Label.SUPPORT)
+"""These labels count as one segment a tree, however many there are."""
+
+
+@dataclass(frozen=True)
+class Edits:
+    """What must be done to a skeleton to correct it, in edges.
+
+    `wrong` are in S alone, `missing` in S* alone, `mislabelled` in both with other labels; `edges`
+    are those of S*. By label: `differing` edges, contiguous `segments` of S*, edges in them.
+    """
+
+    wrong: int
+    missing: int
+    mislabelled: int
+    edges: int
+    differing: dict[Label, int]
+    segments: dict[Label, int]
+    segment_edges: dict[Label, int]
+
+    @property
+    def ratio(self) -> float:
+        """The global edit ratio; NaN where S* has no edges."""
+        distance = self.wrong + self.missing + self.mislabelled
+        return distance / self.edges if self.edges else math.nan
+
+
+def edits(skeleton: Skeleton, corrected: Skeleton) -> Edits:
+    """The edits that turn a skeleton into its correction, both on the same superpoints.
+
+    Where a label changes along a path of S*, one edge's leeway either way is not an error.
+    """
+    ours, theirs = _labelled(skeleton), _labelled(corrected)
+    theirs = {pair: _excused(pair, ours, theirs, corrected) for pair in theirs}
+    both = ours.keys() & theirs.keys()
+    segments = {label: _segments(corrected, label) for label in Label}
+    return Edits(
+        len(ours.keys() - both),
+        len(theirs.keys() - both),
+        sum(ours[pair] != theirs[pair] for pair in both),
+        len(theirs),
+        {label: len(_with(ours, label) ^ _with(theirs, label)) for label in Label},
+        segments,
+        {label: int(corrected.edges_with(label).sum()) for label in Label},
+    )
+
+
+def label_ratios(trees: list[Edits]) -> dict[Label, list[float]]:
+    """The edit ratios of each label, one a tree, of a set of trees; NaN where S* has none of it.
+
+    The denominator is the number of segments of the tree times the mean edges of one in the set.
+    """
+    found = {}
+    for label in Label:
+        mean = sum(e.segment_edges[label] for e in trees) / max(
+            sum(e.segments[label] for e in trees), 1
+        )
+        found[label] = [
+            e.differing[label] / (e.segments[label] * mean) if e.segments[label] else math.nan
+            for e in trees
+        ]
+    return found
+
+
+def _labelled(skeleton: Skeleton) -> dict[Pair, int]:
+    """The edges as pairs of superpoints, the smaller first, with their labels."""
+    pairs = np.sort(skeleton.superpoint[skeleton.edges], axis=1).tolist()
+    return {(i, j): label for (i, j), label in zip(pairs, skeleton.label[1:].tolist(), strict=True)}
+
+
+def _with(edges: dict[Pair, int], label: Label) -> set[Pair]:
+    return {pair for pair, own in edges.items() if own == label}
+
+
+def _excused(
+    pair: Pair, ours: dict[Pair, int], theirs: dict[Pair, int], corrected: Skeleton
+) -> int:
+    """The label to expect of an edge of S*: the one given, if it changes there to just that."""
+    given, true = ours.get(pair, theirs[pair]), theirs[pair]
+    if given == true:
+        return true
+    rows = {int(node): row for row, node in enumerate(corrected.superpoint)}
+    row = max(rows[pair[0]], rows[pair[1]])
+    before = int(corrected.parent[row])
+    around = corrected.label[corrected.parent == row].tolist()
+    if before > 0:
+        around.append(int(corrected.label[before]))
+    return given if given in around else true
+
+
+def _segments(skeleton: Skeleton, label: Label) -> int:
+    """Contiguous segments of a label."""
+    rows = np.flatnonzero(skeleton.edges_with(label))
+    before = skeleton.parent[rows]
+    begins = (before == 0) | (skeleton.label[before] != label)
+    return min(int(begins.sum()), 1) if label in ONE_A_TREE else int(begins.sum())

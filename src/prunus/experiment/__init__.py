@@ -1,0 +1,1 @@
+"""The paper's result section in one command: simulated trees, corrections, tables, figures."""

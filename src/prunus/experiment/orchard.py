@@ -1,0 +1,68 @@
+"""The trees of the experiment: their points as a person would leave them, and their truth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from prunus.experiment.habits import habits_of
+from prunus.learn.labels import TrueWood, edge_labels
+from prunus.measure import branch_of_rows, branches, counting_rows
+from prunus.model import Bools, CandidateGraph, Floats, Label, PointCloud, Skeleton
+from prunus.simulate.scan import simulate_scan
+from prunus.simulate.settings import Setting
+
+
+@dataclass(frozen=True, eq=False)
+class Tree:
+    """The points (P, 3) of one tree alone, its true skeleton, and which of its rows (M,) count.
+
+    `habits` names what is difficult about it.
+    """
+
+    seed: int
+    xyz: Floats
+    truth: Skeleton
+    counts: Bools
+    habits: tuple[str, ...]
+
+    @property
+    def cloud(self) -> PointCloud:
+        """The cloud, as a person leaves it who removes all else by hand."""
+        return PointCloud.from_xyz(self.xyz)
+
+
+@lru_cache(maxsize=4)
+def tree_of(seed: int, setting: Setting = "field") -> Tree:
+    """The target of the scan of that seed."""
+    scan = simulate_scan(seed, setting)
+    truth = scan.truth
+    row = np.where(scan.truth_rows, np.cumsum(scan.truth_rows) - 1, -1)
+    own = scan.tree == 0
+    at = row[scan.node[own]]
+    branch = np.where(at >= 0, branch_of_rows(branches(truth), len(truth))[at], -1)
+    counts = counting_rows(truth, scan.xyz[own], branch)
+    return Tree(seed, scan.xyz[own], truth, counts, habits_of(truth))
+
+
+@dataclass(frozen=True)
+class OracleScorer:
+    """Who knows the tree: every candidate edge gets its true validity and category."""
+
+    tree: Tree
+    name: str = "oracle"
+    floor: float = 0.0
+
+    def __call__(self, candidates: CandidateGraph) -> Floats:
+        """Confidence (E,): 1 where the edge follows wood."""
+        return self.judge(candidates)[0]
+
+    def judge(self, candidates: CandidateGraph) -> tuple[Floats, Floats]:
+        """Confidence (E,) and category (E, 5), both 0 or 1; of edges that follow none, any."""
+        nodes = candidates.superpoints.cloud.to_input.apply(candidates.xyz)
+        found = edge_labels(nodes, candidates.edges, TrueWood.of([self.tree.truth]))
+        category = np.eye(len(Label) + 1)[np.maximum(found, 0)]
+        category[found < 0] = 1 / (len(Label) + 1)
+        return (found >= 0).astype(np.float64), category

@@ -1,0 +1,155 @@
+"""One trial: one tree, one draw of points, one way of doing it; what is measured of it."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from prunus.evaluate.correction import corrected
+from prunus.evaluate.curves import curve_measures
+from prunus.evaluate.edits import edits
+from prunus.evaluate.found import branch_measures
+from prunus.experiment.orchard import OracleScorer, Tree, tree_of
+from prunus.measure import shown
+from prunus.model import Label, Skeleton
+from prunus.params import Parameters
+from prunus.pipeline import Result, skeletonize
+from prunus.search import learned_score_of, shipped_score, skel_score
+from prunus.simulate.settings import Setting
+
+Record = dict[str, Any]
+"""What is measured of a trial: plain numbers and words, as they go into results.json."""
+
+
+@dataclass(frozen=True)
+class Way:
+    """A row of every table: its parameters, whether the edges are told, whether the base is."""
+
+    name: str
+    about: str
+    params: Parameters
+    oracle: bool = False
+    base: bool = True
+
+
+WAYS = (
+    Way("paper", "the method as the paper has it, with its network", Parameters.paper()),
+    Way("default", "ours", Parameters()),
+    Way("default, base found", "ours, the base not given", Parameters(), base=False),
+    Way("oracle", "ours, every candidate edge told truly", Parameters(), oracle=True),
+    Way(
+        "paper, oracle", "the paper's, every candidate edge told truly",
+        Parameters.paper(), oracle=True,
+    ),
+)  # fmt: skip
+
+
+def _undone(group: str, **values: Any) -> Parameters:
+    return Parameters().changed(group, **values)
+
+
+def _paper_with(group: str, **values: Any) -> Parameters:
+    return Parameters.paper().changed(group, **values)
+
+
+ABLATIONS = (
+    Way(
+        "random superpoints", "ours, but superpoints at random",
+        _undone("superpoints", place="random"),
+    ),
+    Way(
+        "paper's score", "ours, but the paper's score and search", _undone("search", score="paper")
+    ),
+    Way("paper's network", "ours, but its network", _undone("confidence", edge_net="paper")),
+    Way(
+        "paper + our network", "the paper's, but our network",
+        _paper_with("confidence", edge_net="ours"),
+    ),
+    Way(
+        "paper + floor", "the paper's, hopeless edges left out",
+        _paper_with("confidence", floor=0.30),
+    ),
+    Way("paper + refine", "the paper's, refined", _paper_with("search", refine=True)),
+    Way(
+        "paper + stubs", "the paper's, stubs dropped", _paper_with("leaders", min_length=0.35)
+    ),
+    Way(
+        "paper + several", "the paper's, several side branches a piece",
+        _paper_with("side_branches", several=True),
+    ),
+    Way(
+        "paper + axes", "the paper's, superpoints on axes",
+        _paper_with("superpoints", place="axes"),
+    ),
+)  # fmt: skip
+"""What each part brings: ours with one thing undone, the paper's with one thing done."""
+
+
+def ways(ablation: bool) -> tuple[Way, ...]:
+    """The rows of every table."""
+    return WAYS + ABLATIONS if ablation else WAYS
+
+
+def trial(seed: int, draw: int, way: Way, setting: Setting) -> Record:
+    """Skeletonize one draw of a tree, correct it, measure it."""
+    tree = tree_of(seed, setting)
+    cloud = tree.cloud
+    base = tree.truth.xyz[0] if way.base else None
+    scorer = OracleScorer(tree) if way.oracle else None
+    cpu = time.process_time()
+    result = skeletonize(cloud, base, way.params, draw, scorer)
+    cpu = time.process_time() - cpu
+    return {
+        "seed": seed,
+        "draw": draw,
+        "way": way.name,
+        "habits": list(tree.habits),
+        "points": len(result.graph.superpoints.cloud),
+        "superpoints": len(result.graph.xyz),
+        "candidate_edges": len(result.graph.edges),
+        "tips": len(result.graph.tips),
+        "cpu_s": {name: seconds for name, (seconds, _) in result.seconds.items()} | {"total": cpu},
+        **judged(result, tree),
+    }
+
+
+def judged(result: Result, tree: Tree) -> Record:
+    """The edits, the curve and branch measures, and how the corrected skeleton scores."""
+    found = result.skeleton
+    nodes = result.graph.superpoints.cloud.to_input.apply(result.graph.xyz)
+    right = corrected(found, nodes, tree.truth, tree.counts)
+    needed = edits(found, right)
+    counts = asdict(needed)
+    for name in ("differing", "segments", "segment_edges"):
+        counts[name] = {label.word: counts[name][label] for label in Label}
+    return {
+        "edit_ratio": needed.ratio,
+        "edits": counts,
+        "score": score_of(found, result),
+        "score_of_corrected": score_of(right, result),
+        "curves": _plain(curve_measures(found, tree.truth)),
+        "branches": _plain(branch_measures(found, tree.truth)),
+        "branches_shown": _plain(branch_measures(found, shown(tree.truth, tree.counts))),
+    }
+
+
+def score_of(skeleton: Skeleton, result: Result) -> float:
+    """What a skeleton on the superpoints of a result scores under the score that made the result.
+
+    Edges that are no candidates have no confidence.
+    """
+    graph = result.graph
+    if result.params.search.score == "learned":
+        return learned_score_of(skeleton, graph, shipped_score())
+    known = dict(zip(map(tuple, graph.edges.tolist()), graph.confidence.tolist(), strict=True))
+    ends = np.sort(skeleton.superpoint[skeleton.edges], axis=1).tolist()
+    confidence = [float("nan"), *(known.get((i, j), 0.0) for i, j in ends)]
+    return skel_score(replace(skeleton, confidence=np.array(confidence)), result.params)
+
+
+def _plain(measures: dict[str, float]) -> dict[str, float | None]:
+    """Measures as JSON has them: null where there is none."""
+    return {name: None if np.isnan(value) else value for name, value in measures.items()}

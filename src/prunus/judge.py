@@ -1,0 +1,130 @@
+"""`prunus evaluate`: skeletons against gold standards, one pair or two folders of them."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from prunus.errors import PrunusError
+from prunus.evaluate.curves import curve_measures, line_measures
+from prunus.evaluate.edits import edits, label_ratios
+from prunus.evaluate.found import branch_measures
+from prunus.io.lines import READERS, read_lines
+from prunus.io.skeletons import read_skeleton
+from prunus.model import Label, Skeleton
+
+Record = dict[str, Any]
+NAMELESS = ("skeleton", "truth", "gold")
+"""Files of these names are called after their folder."""
+
+
+def pairs_in(skeletons: Path, gold: Path) -> list[tuple[str, Path, Path]]:
+    """Name, skeleton and gold standard of each pair; in folders those of the same name.
+
+    A file has its own name, and `NAME/skeleton.json` or `NAME/truth.json` that of its folder.
+    Raises PrunusError where a gold standard has no skeleton, or there is none.
+    """
+    if not skeletons.is_dir() and not gold.is_dir():
+        return [(str(skeletons), skeletons, gold)]
+    if skeletons.is_dir() != gold.is_dir():
+        raise PrunusError(f"{skeletons} and {gold}: expected two files or two folders")
+    ours, theirs = _named(skeletons, "skeleton"), _named(gold, "truth", "gold", "skeleton")
+    if not theirs:
+        raise PrunusError(
+            f"{gold}: no gold standard in it; expected NAME/truth.json, or NAME with one of "
+            f"{' '.join(sorted(READERS))}"
+        )
+    missing = sorted(set(theirs) - set(ours))
+    if missing:
+        raise PrunusError(f"{skeletons}: no skeleton {missing[0]!r}, which {gold} has")
+    return [(name, ours[name], theirs[name]) for name in sorted(theirs)]
+
+
+def _named(folder: Path, *stems: str) -> dict[str, Path]:
+    """The skeleton files in a folder by name; `stems` are looked for in the folders below it."""
+    found = {p.stem: p for p in sorted(folder.iterdir()) if p.suffix.lower() in READERS}
+    for below in sorted(path for path in folder.iterdir() if path.is_dir()):
+        held = [path for stem in stems if (path := below / f"{stem}.json").exists()]
+        if held:
+            found[below.name] = held[0]
+    return found
+
+
+def compare(name: str, predicted: Path, gold: Path) -> Record:
+    """All measures of one pair; `labels` says whether both have them.
+
+    Curve and branch measures; `edit_ratio` and the edits where both stand on the same superpoints.
+    Without labels the geometry alone.
+    """
+    ours, theirs = _labelled(predicted), _labelled(gold)
+    if ours is None or theirs is None:
+        measures = line_measures(read_lines(predicted), read_lines(gold))
+        return {"name": name, "labels": False, **measures}
+    record: Record = {"name": name, "labels": True}
+    if _same_superpoints(ours, theirs):
+        needed = edits(ours, theirs)
+        record |= {"edit_ratio": needed.ratio, "wrong": needed.wrong, "missing": needed.missing,
+                   "mislabelled": needed.mislabelled, "edges": needed.edges}  # fmt: skip
+        ratios = label_ratios([needed])
+        record |= {f"{label.word}_edit_ratio": ratios[label][0] for label in Label}
+    return record | curve_measures(ours, theirs) | branch_measures(ours, theirs)
+
+
+def _labelled(path: Path) -> Skeleton | None:
+    """The skeleton of a file of ours; None where another tool wrote it."""
+    if path.suffix.lower() == ".json":
+        return read_skeleton(path)
+    if path.suffix.lower() != ".swc":
+        return None
+    try:
+        return read_skeleton(path)
+    except PrunusError:
+        return None
+
+
+def _same_superpoints(one: Skeleton, other: Skeleton) -> bool:
+    """Whether two skeletons share superpoints: where a number stands in both, so does the place."""
+    if (one.superpoint < 0).any() or (other.superpoint < 0).any():
+        return False
+    _, mine, theirs = np.intersect1d(one.superpoint, other.superpoint, return_indices=True)
+    return len(mine) > 0 and bool(np.allclose(one.xyz[mine], other.xyz[theirs], atol=1e-4))
+
+
+def spread_lines(records: list[Record]) -> list[str]:
+    """A line a measure: median, quartiles, best and worst over the pairs, and how many have it."""
+    names = [n for n in dict.fromkeys(k for r in records for k in r) if n not in ("name", "labels")]
+    lines = [f"{'':<28} {'median':>9} {'quartiles':>19} {'least':>9} {'most':>9} {'pairs':>6}"]
+    for name in names:
+        known = [r[name] for r in records if name in r and not math.isnan(r[name])]
+        if known:
+            low, middle, high = np.quantile(known, [0.25, 0.5, 0.75])
+            lines.append(
+                f"{name:<28} {middle:9.3f} {low:9.3f} {high:9.3f} {min(known):9.3f} "
+                f"{max(known):9.3f} {len(known):6d}"
+            )
+        else:
+            lines.append(f"{name:<28} {'-':>9}")
+    return lines
+
+
+def csv_bytes(records: list[Record]) -> bytes:
+    """A row a pair; empty where a measure has no value."""
+    held = io.StringIO()
+    names = list(dict.fromkeys(name for record in records for name in record))
+    writer = csv.DictWriter(held, names, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(without_nan(record) for record in records)
+    return held.getvalue().encode()
+
+
+def without_nan(record: Record) -> Record:
+    """The record with None in place of NaN, as JSON has it."""
+    return {
+        name: None if isinstance(value, float) and math.isnan(value) else value
+        for name, value in record.items()
+    }

@@ -1,0 +1,50 @@
+"""What a search returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from prunus.kernels.tables import LABELS, GraphTable
+from prunus.model import Floats, SeededGraph, Skeleton
+from prunus.search.refine import Entries
+
+
+@dataclass(frozen=True, eq=False)
+class SearchResult:
+    """The skeleton, its score, and the best score (I,) in each iteration of the search."""
+
+    skeleton: Skeleton
+    score: float
+    history: Floats
+
+
+def as_skeleton(entry: Entries, graph: GraphTable, seeded: SeededGraph) -> Skeleton:
+    """The skeleton of a row of entries, parents before children."""
+    below: dict[int, list[int]] = {}
+    for child in np.flatnonzero(entry >= 0).tolist():
+        below.setdefault(int(graph.tail[entry[child] // LABELS]), []).append(child)
+    nodes, parent, label = [seeded.base], [-1], [0]
+    for row, node in enumerate(nodes):
+        for child in below.get(node, []):
+            nodes.append(child)
+            parent.append(row)
+            label.append(int(entry[child] % LABELS))
+    label[0] = label[1] if len(label) > 1 else 0
+    return Skeleton.build(
+        seeded.xyz[nodes],
+        parent,
+        label,
+        confidence=_confidence(nodes, parent, seeded),
+        superpoint=nodes,
+    )
+
+
+def _confidence(nodes: list[int], parent: list[int], seeded: SeededGraph) -> Floats:
+    of_pair = {
+        (int(i), int(j)): c for (i, j), c in zip(seeded.edges, seeded.confidence, strict=True)
+    }
+    ends = [(nodes[p], nodes[row]) for row, p in enumerate(parent)]
+    known = [of_pair[min(pair), max(pair)] for pair in ends[1:]]
+    return np.array([np.nan, *known])

@@ -1,0 +1,71 @@
+"""Clouds drawn together onto axes, and covered along them."""
+
+import numpy as np
+import pytest
+
+from prunus.kernels.axes import contract, count_nearest, cover_along, main_axis
+from prunus.model import Floats
+
+
+def rod(rng: np.random.Generator, along: Floats, length: float, thick: float, n: int) -> Floats:
+    """Points (n, 3) evenly within `thick` of a line from the origin."""
+    aside = rng.normal(0, 1, (n, 3))
+    aside -= np.outer(aside @ along, along)
+    aside *= (thick * np.sqrt(rng.random(n)) / np.linalg.norm(aside, axis=1))[:, None]
+    return np.outer(rng.uniform(0, length, n), along) + aside
+
+
+def test_the_main_axis_is_the_greatest_eigenvector(rng: np.random.Generator) -> None:
+    for _ in range(50):
+        half = rng.normal(size=(3, 3)) * [3, 1, 0.3]
+        spread = half @ half.T
+        values, vectors = np.linalg.eigh(spread)
+        axis = np.empty(3)
+        line = main_axis(spread, axis)
+        if values[1] < 0.9 * values[2]:
+            assert abs(axis @ vectors[:, 2]) == pytest.approx(1, abs=1e-6)
+            assert line == pytest.approx(1 - values[1] / values[2], abs=1e-6)
+
+
+def test_a_thick_branch_becomes_a_thread_along_its_axis(rng: np.random.Generator) -> None:
+    along = np.array([0.6, 0.0, 0.8])
+    points = rod(rng, along, 0.6, 0.02, 800)
+    drawn, axis, line, around = contract(points, np.ones(len(points)), 0.05, 4)
+    far = drawn @ along
+    aside = np.linalg.norm(drawn - np.outer(far, along), axis=1)
+    inner = (far > 0.05) & (far < 0.55)
+    assert np.percentile(aside[inner], 95) < 0.006
+    assert np.percentile(np.abs(axis[inner] @ along), 5) > 0.98
+    assert np.median(line[inner]) > 0.95
+    assert around.min() >= 1
+    assert np.abs(far - points @ along).max() < 0.03, "points go across the branch only"
+
+
+def test_where_branches_meet_it_is_least_like_a_line(rng: np.random.Generator) -> None:
+    up, across = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
+    points = np.concatenate([rod(rng, up, 0.6, 0.015, 900), rod(rng, across, 0.4, 0.015, 600)])
+    points[:900, 2] -= 0.3
+    drawn, _, line, _ = contract(points, np.ones(len(points)), 0.05, 4)
+    assert np.linalg.norm(drawn[line.argmin()]) < 0.04
+
+
+def test_rods_cover_every_point_once_and_no_neighbour(rng: np.random.Generator) -> None:
+    up = np.array([0.0, 0.0, 1.0])
+    one = np.outer(np.linspace(0, 1, 101), up)
+    xyz = np.concatenate([one, one + np.array([0.06, 0, 0])])
+    axis, size = np.tile(up, (len(xyz), 1)), np.ones(len(xyz), np.int64)
+    chosen, held = cover_along(xyz, axis, size, rng.permutation(len(xyz)), 0.08, 0.04)
+    for line in (0.0, 0.06):
+        heights = np.sort(xyz[chosen[np.abs(xyz[chosen, 0] - line) < 0.01], 2])
+        assert np.diff(heights).max() <= 0.16 + 1e-9
+        assert np.diff(heights).min() > 0.08
+        assert heights[0] <= 0.08 and heights[-1] >= 0.92
+    assert held.max() == 17
+
+
+def test_every_point_counts_for_its_nearest_node_alone(rng: np.random.Generator) -> None:
+    xyz, nodes = rng.random((400, 3)), rng.random((20, 3))
+    away = np.linalg.norm(xyz[:, None] - nodes[None], axis=2)
+    near = away.min(axis=1) <= 0.3
+    expected = np.bincount(away.argmin(axis=1)[near], minlength=20)
+    assert np.array_equal(count_nearest(xyz, nodes, 0.3), expected)

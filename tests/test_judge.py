@@ -1,0 +1,81 @@
+"""`prunus evaluate`: pairs, folders, formats, and what is wrong with them."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from prunus.cli import app
+from prunus.io.export import write_ply, write_swc
+from prunus.io.skeletons import write_skeleton
+from tests.drawn import TREE, tree
+
+RUN = CliRunner()
+BARE = TREE.replace("l   lb l", "l   l  l")
+
+
+def test_a_pair_with_labels(tmp_path: Path) -> None:
+    write_skeleton(tmp_path / "found.json", tree(BARE))
+    write_skeleton(tmp_path / "gold.json", tree())
+    done = RUN.invoke(
+        app, ["evaluate", str(tmp_path / "found.json"), str(tmp_path / "gold.json"), "--json"]
+    )
+    assert done.exit_code == 0
+    held = json.loads(done.stdout)
+    assert held["labels"] is True
+    assert held["leader_recall"] == 1
+    assert held["side_branches_found"] == 0
+    assert "edit_ratio" not in held, "they stand on no superpoints"
+
+
+def test_on_the_same_superpoints_the_edits_are_counted(tmp_path: Path) -> None:
+    whole = replace(tree(), superpoint=np.arange(len(tree())))
+    kept = np.ones(len(whole), bool)
+    kept[-1] = False
+    write_skeleton(tmp_path / "found.json", whole.part(kept))
+    write_skeleton(tmp_path / "gold.json", whole)
+    done = RUN.invoke(
+        app, ["evaluate", str(tmp_path / "found.json"), str(tmp_path / "gold.json"), "--json"]
+    )
+    held = json.loads(done.stdout)
+    assert (held["wrong"], held["missing"], held["mislabelled"]) == (0, 1, 0)
+    assert held["edit_ratio"] == pytest.approx(1 / (len(whole) - 1))
+
+
+def test_other_tools_are_measured_by_geometry(tmp_path: Path) -> None:
+    write_ply(tmp_path / "found.ply", tree())
+    write_swc(tmp_path / "gold.swc", tree())
+    done = RUN.invoke(app, ["evaluate", str(tmp_path / "found.ply"), str(tmp_path / "gold.swc")])
+    assert done.exit_code == 0
+    assert "geometry_recall" in done.stdout
+    assert "leader" not in done.stdout
+
+
+def test_two_folders(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        write_skeleton(tmp_path / "out" / name / "skeleton.json", tree(BARE))
+        write_skeleton(tmp_path / "gold" / name / "truth.json", tree())
+    table = tmp_path / "table.csv"
+    words = ["evaluate", str(tmp_path / "out"), str(tmp_path / "gold"), "--csv", str(table)]
+    done = RUN.invoke(app, words)
+    assert done.exit_code == 0
+    assert [row.split(",")[0] for row in table.read_text().splitlines()] == ["name", "a", "b"]
+    (tmp_path / "out" / "b" / "skeleton.json").unlink()
+    done = RUN.invoke(app, words)
+    assert done.exit_code == 2
+    assert "no skeleton 'b'" in done.output
+
+
+@pytest.mark.parametrize(
+    ("found", "says"),
+    [("missing.json", "cannot be read"), ("gold.stl", "expected one of"), (".", "two files")],
+)
+def test_bad_input_is_named(tmp_path: Path, found: str, says: str) -> None:
+    write_skeleton(tmp_path / "gold.json", tree())
+    (tmp_path / "gold.stl").write_text("solid")
+    done = RUN.invoke(app, ["evaluate", str(tmp_path / found), str(tmp_path / "gold.json")])
+    assert done.exit_code == 2
+    assert says in done.output.replace("\n", " ")
