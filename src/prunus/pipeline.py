@@ -82,13 +82,14 @@ def skeletonize(
         scored = score_edges(candidates, scorer, params.confidence)
     with _timed(seconds, "seeds"):
         seeded, warnings = find_seeds(scored, params, at)
-    if params.search.score == "learned" and scored.category.size:
+    learned = params.search.score == "learned" and scored.category.size > 0
+    if learned:
         with _timed(seconds, "search"):
             found = search_learned(seeded, shipped_score())
     else:
         found = _as_in_the_paper(seeded, params, rng, seconds)
     with _timed(seconds, "measures"):
-        warnings += remarks(found.skeleton, seeded)
+        warnings += remarks(found.skeleton, seeded, for_tips=not learned)
     return Result(
         found.skeleton, seeded, found.score, found.history, seconds, params, seed, warnings
     )

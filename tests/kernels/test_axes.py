@@ -30,7 +30,7 @@ def test_the_main_axis_is_the_greatest_eigenvector(rng: np.random.Generator) -> 
 def test_a_thick_branch_becomes_a_thread_along_its_axis(rng: np.random.Generator) -> None:
     along = np.array([0.6, 0.0, 0.8])
     points = rod(rng, along, 0.6, 0.02, 800)
-    drawn, axis, line, around = contract(points, np.ones(len(points)), 0.05, 4)
+    drawn, axis, line, _, around = contract(points, np.ones(len(points)), 0.05, 4)
     far = drawn @ along
     aside = np.linalg.norm(drawn - np.outer(far, along), axis=1)
     inner = (far > 0.05) & (far < 0.55)
@@ -45,7 +45,7 @@ def test_where_branches_meet_it_is_least_like_a_line(rng: np.random.Generator) -
     up, across = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
     points = np.concatenate([rod(rng, up, 0.6, 0.015, 900), rod(rng, across, 0.4, 0.015, 600)])
     points[:900, 2] -= 0.3
-    drawn, _, line, _ = contract(points, np.ones(len(points)), 0.05, 4)
+    drawn, _, line, _, _ = contract(points, np.ones(len(points)), 0.05, 4)
     assert np.linalg.norm(drawn[line.argmin()]) < 0.04
 
 

@@ -29,19 +29,31 @@ def rod(start: list[float], end: list[float], rng: np.random.Generator, count: i
 
 
 def scored(points: Floats, rng: np.random.Generator) -> ScoredGraph:
-    superpoints = find_superpoints(PointCloud.from_xyz(points), PARAMS.superpoints, rng)
+    """As in the paper: superpoints at random."""
+    at_random = Parameters.paper().superpoints
+    superpoints = find_superpoints(PointCloud.from_xyz(points), at_random, rng)
     return score_edges(find_candidates(superpoints), HandmadeScorer(), PARAMS.confidence)
 
 
-def test_superpoints_lie_in_the_wood_and_noise_gets_none(rng: np.random.Generator) -> None:
+@pytest.mark.parametrize(("params", "most"), [(PARAMS, 25), (Parameters.paper(), 14)])
+def test_superpoints_lie_in_the_wood_and_noise_gets_none(
+    params: Parameters, most: int, rng: np.random.Generator
+) -> None:
     stick = rod([0, 0, 0], [0, 0, 1], rng)
     cloud = PointCloud.from_xyz(np.concatenate([stick, [[3.0, 0, 0], [3.0, 0, 0.05]]]))
-    found = find_superpoints(cloud, PARAMS.superpoints, rng)
+    found = find_superpoints(cloud, params.superpoints, rng)
     back = cloud.to_input.apply(found.xyz)
-    assert np.abs(back[:, :2]).max() < 0.03
-    assert 5 <= len(found) <= 14
+    assert np.abs(back[:, :2]).max() < 0.04
+    assert 5 <= len(found) <= most
     assert found.unused_points >= 2
     assert found.points_near(np.arange(len(found))).sum() == len(cloud) - found.unused_points
+
+
+def test_the_wood_of_all_superpoints_is_about_as_long_as_the_branch(
+    rng: np.random.Generator,
+) -> None:
+    cloud = PointCloud.from_xyz(rod([0, 0, 0], [0, 0, 2], rng, 6000) * [0.7, 0.7, 1.0])
+    assert find_superpoints(cloud, PARAMS.superpoints, rng).wood.sum() == pytest.approx(2, rel=0.2)
 
 
 def test_a_cloud_too_thin_for_any_superpoint_is_refused(rng: np.random.Generator) -> None:

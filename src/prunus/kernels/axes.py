@@ -42,15 +42,17 @@ def main_axis(spread: Floats, axis: Floats) -> float:
 @kernel
 def contract(
     xyz: Floats, weight: Floats, radius: float, rounds: int
-) -> tuple[Floats, Floats, Floats, Floats]:
+) -> tuple[Floats, Floats, Floats, Floats, Floats]:
     """Points (P, 3) of some weights (P,) drawn together in so many rounds.
 
     Returns where they go (P, 3), on the grid of `model.arrays`, the direction of the branch (P, 3),
-    how much its surroundings are a line (P,), in [0, 1], and the weight around (P,).
+    how much its surroundings are a line (P,), in [0, 1], how far to one side of it along that line
+    they lie (P,), in radii, and the weight around (P,).
     """
     P = len(xyz)
     here = xyz.copy()
-    axis, line, around = np.zeros((P, 3)), np.zeros(P), np.zeros(P)
+    axis, line = np.zeros((P, 3)), np.zeros(P)
+    aside, around = np.zeros(P), np.zeros(P)
     mean, spread = np.empty(3), np.empty((3, 3))
     for _ in range(rounds):
         start, members = within(here, here, radius)
@@ -83,11 +85,12 @@ def contract(
                     spread[a, b] -= mean[a] * mean[b]
             line[p] = main_axis(spread, axis[p])
             along = (mean * axis[p]).sum()
+            aside[p] = abs(along) / radius
             for a in range(3):
                 moved = mean[a] - along * axis[p, a]
                 there[p, a] += np.rint(moved / GRID) * GRID
         here = there
-    return here, axis, line, around
+    return here, axis, line, aside, around
 
 
 @kernel

@@ -13,8 +13,11 @@ SHORT = 0.30
 """A support that ends so many metres before the scan is worth a remark."""
 
 
-def remarks(skeleton: Skeleton, graph: SeededGraph) -> list[str]:
-    """Remarks on a skeleton in the house frame, the most important first; often none."""
+def remarks(skeleton: Skeleton, graph: SeededGraph, for_tips: bool = True) -> list[str]:
+    """Remarks on a skeleton in the house frame, the most important first; often none.
+
+    `for_tips`: the search went for the tips, so that one that was not reached is worth a remark.
+    """
     found = []
     for label in (Label.SUPPORT, Label.LEADER):
         if not skeleton.edges_with(label).any():
@@ -23,7 +26,7 @@ def remarks(skeleton: Skeleton, graph: SeededGraph) -> list[str]:
     if unexplained > UNEXPLAINED:
         found.append(f"{unexplained:.0%} of the points are not explained by any branch")
     missed = int((~np.isin(graph.tips, skeleton.superpoint)).sum())
-    if missed:
+    if missed and for_tips:
         found.append(f"{missed} of {len(graph.tips)} tips were not reached")
     return found + _short_supports(skeleton, graph)
 

@@ -51,7 +51,7 @@ LAYOUT: dict[str, Any] = {
 }
 SCORE_LAYOUT = {
     "margin": {"l": 42, "r": 8, "t": 6, "b": 36},
-    "xaxis": {"title": {"text": "iteration (edges grown)"}},
+    "xaxis": {"title": {"text": "iteration"}},
     "yaxis": {"title": {"text": "best score"}},
     "showlegend": False,
 }

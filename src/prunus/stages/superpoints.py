@@ -2,7 +2,7 @@
 
 The paper covers the cloud by balls of r_super around points drawn at random, and names the main
 remedy for what it misses: superpoints where branches are. So the cloud is drawn together onto the
-axes of its branches first, and covered by rods along them, starting where branches meet.
+axes of its branches first, and covered by rods along them, starting where branches end or meet.
 """
 
 from __future__ import annotations
@@ -19,14 +19,16 @@ from prunus.params import Cover
 
 THIN = 0.015
 """The cloud is thinned to balls of this radius before it is drawn together, metres."""
-GATHER = 0.05
-"""Points within so many metres say where the axis is: half of r_super."""
+GATHER = 0.03
+"""Points within so many metres say where the axis is: about the radius of a smeared branch."""
 ROUNDS = 3
 """More rounds bring no change."""
 LONELY = 3.0
 """A point of the thinned cloud with less around it is noise; each counts the root of its points."""
 STEP = 0.02
 """Wood is measured by balls of this radius along the drawn-together cloud, metres."""
+ENDS = 2.0
+"""How much it counts for the order that all else lies to one side, against being a line."""
 PARKED = 1.337
 """A line covered at random by balls of radius 1 takes one every so often (Renyi's parking)."""
 
@@ -38,9 +40,9 @@ def find_superpoints(cloud: PointCloud, params: Cover, rng: np.random.Generator)
     """
     axes = _drawn_together(cloud, rng)
     if params.place == "axes":
-        meeting_first = np.argsort(axes.line, kind="stable")
+        ends_first = np.argsort(axes.order, kind="stable")
         chosen, size = cover_along(
-            axes.xyz, axes.along, axes.size, meeting_first, params.along, params.across
+            axes.xyz, axes.along, axes.size, ends_first, params.along, params.across
         )
         xyz = axes.xyz[chosen]
     else:
@@ -59,22 +61,23 @@ def find_superpoints(cloud: PointCloud, params: Cover, rng: np.random.Generator)
 
 @dataclass(frozen=True, eq=False)
 class _Axes:
-    """The drawn-together cloud (Q, 3), the direction (Q, 3) and straightness (Q,) of its branches.
+    """The drawn-together cloud (Q, 3) and the direction (Q, 3) of its branches.
 
-    `size` (Q,) counts the points that each stands for; `steps` (S, 3) lie `STEP` apart on it.
+    `order` (Q,) is least where branches end or meet; `size` (Q,) counts the points that each
+    stands for; `steps` (S, 3) lie `STEP` apart.
     """
 
     xyz: Floats
     along: Floats
-    line: Floats
+    order: Floats
     size: Ints
     steps: Floats
 
 
 def _drawn_together(cloud: PointCloud, rng: np.random.Generator) -> _Axes:
     thinned, size = cover(cloud.xyz, rng.permutation(len(cloud)), THIN)
-    xyz, along, line, around = contract(thinned, np.sqrt(size), GATHER, ROUNDS)
+    xyz, along, line, aside, around = contract(thinned, np.sqrt(size), GATHER, ROUNDS)
     kept = around >= LONELY
     xyz = xyz[kept]
     steps, _ = cover(xyz, rng.permutation(len(xyz)), STEP)
-    return _Axes(xyz, along[kept], line[kept], size[kept], steps)
+    return _Axes(xyz, along[kept], (line - ENDS * aside)[kept], size[kept], steps)
