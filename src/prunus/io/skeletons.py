@@ -45,7 +45,9 @@ class SkeletonFile(BaseModel):
     confidence: list[float | None] = Field(description="of the edge; null = unknown")
     radius: list[float | None] = Field(description="null = unknown")
     superpoint: list[int] = Field(description="index of the superpoint; -1 = none")
-    score: float | None = Field(None, description="under params.search.score: learned, or SkelScore")
+    score: float | None = Field(
+        None, description="under params.search.score: learned, or SkelScore"
+    )
     input: InputRecord | None = None
     params: dict[str, Any] | None = None
     seed: int | None = None
