@@ -12,6 +12,7 @@ from typer.testing import CliRunner, Result
 from prunus.cli import app
 from prunus.io.clouds import write_cloud
 from prunus.io.skeletons import read_record, read_skeleton
+from prunus.params import Parameters
 from prunus.rules import offenders
 from tests.conftest import simulated
 
@@ -52,6 +53,14 @@ def test_one_tree_gives_all_its_files(scan: Path, quick: Path, tmp_path: Path) -
     assert record.params is not None and record.params["search"]["K"] == 20
     assert np.linalg.norm(skeleton.xyz[0]) < 0.15
     assert "leaders" in done.stdout
+
+
+def test_the_method_of_the_paper_goes_by_its_name(scan: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    base = ["--base", "0", "0", "0"]
+    done = prunus("skeletonize", scan, "-o", out, *base, "--params", "paper", *FAST)
+    assert done.exit_code == 0, done.output
+    assert Parameters.from_toml(out / "params.toml") == Parameters.paper()
 
 
 def test_the_same_run_gives_the_same_bytes(scan: Path, quick: Path, tmp_path: Path) -> None:

@@ -237,15 +237,16 @@ def evaluate(
     from json import dumps
 
     from prunus.io.safely import write_bytes
-    from prunus.judge import compare, csv_bytes, pairs_in, spread_lines, without_nan
+    from prunus.io.tables import csv_bytes, without_nan
+    from prunus.judge import compare, pairs_in, spread_lines
 
     try:
-        records = [compare(*pair) for pair in pairs_in(skeleton, gold)]
+        records = [without_nan(compare(*pair)) for pair in pairs_in(skeleton, gold)]
         if csv is not None:
             write_bytes(csv, csv_bytes(records))
     except PrunusError as error:
         _stop(error)
-    lines = [dumps(without_nan(record)) for record in records] if json else spread_lines(records)
+    lines = [dumps(record) for record in records] if json else spread_lines(records)
     for line in lines:
         typer.echo(line)
 

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import math
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +16,6 @@ from prunus.io.skeletons import read_skeleton
 from prunus.model import Label, Skeleton
 
 Record = dict[str, Any]
-NAMELESS = ("skeleton", "truth", "gold")
-"""Files of these names are called after their folder."""
 
 
 def pairs_in(skeletons: Path, gold: Path) -> list[tuple[str, Path, Path]]:
@@ -96,11 +91,14 @@ def _same_superpoints(one: Skeleton, other: Skeleton) -> bool:
 
 
 def spread_lines(records: list[Record]) -> list[str]:
-    """A line a measure: median, quartiles, best and worst over the pairs, and how many have it."""
+    """A line a measure: median, quartiles, best and worst over the pairs, and how many have it.
+
+    A measure without a value is None, see `io.tables.without_nan`.
+    """
     names = [n for n in dict.fromkeys(k for r in records for k in r) if n not in ("name", "labels")]
     lines = [f"{'':<28} {'median':>9} {'quartiles':>19} {'least':>9} {'most':>9} {'pairs':>6}"]
     for name in names:
-        known = [r[name] for r in records if name in r and not math.isnan(r[name])]
+        known = [r[name] for r in records if r.get(name) is not None]
         if known:
             low, middle, high = np.quantile(known, [0.25, 0.5, 0.75])
             lines.append(
@@ -110,21 +108,3 @@ def spread_lines(records: list[Record]) -> list[str]:
         else:
             lines.append(f"{name:<28} {'-':>9}")
     return lines
-
-
-def csv_bytes(records: list[Record]) -> bytes:
-    """A row a pair; empty where a measure has no value."""
-    held = io.StringIO()
-    names = list(dict.fromkeys(name for record in records for name in record))
-    writer = csv.DictWriter(held, names, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(without_nan(record) for record in records)
-    return held.getvalue().encode()
-
-
-def without_nan(record: Record) -> Record:
-    """The record with None in place of NaN, as JSON has it."""
-    return {
-        name: None if isinstance(value, float) and math.isnan(value) else value
-        for name, value in record.items()
-    }

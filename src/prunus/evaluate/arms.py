@@ -6,12 +6,9 @@ from functools import partial
 
 import numpy as np
 
-from prunus.measure import Branch, branch_of_rows
+from prunus.measure import COUNTS, Branch, branch_of_rows
 from prunus.model import Floats, Ints, Label, Skeleton
 from prunus.model.arrays import GRID
-
-COUNTS = 0.10
-"""A true branch of so many metres counts; of a fork, an arm of so many."""
 
 
 def arms(skeleton: Skeleton, shared: Floats | None = None) -> list[Branch]:

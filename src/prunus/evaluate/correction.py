@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from prunus.evaluate.arms import COUNTS
 from prunus.evaluate.compared import compared
 from prunus.evaluate.curves import SPACING
 from prunus.kernels.neighbours import within
-from prunus.model import Bools, Floats, Ints, Label, Skeleton
+from prunus.measure import COUNTS
+from prunus.model import Bools, Floats, Label, Skeleton, parents_first
 from prunus.model.arrays import GRID
 from prunus.rules import can_leave
 
@@ -247,15 +247,8 @@ def _way_to(line: Floats, point: Floats) -> float:
 
 
 def _as_skeleton(work: Correction) -> Skeleton:
-    below: dict[int, list[int]] = {}
-    for node, (before, _) in sorted(work.into.items()):
-        below.setdefault(before, []).append(node)
-    order, parent = [work.root], [-1]
-    for row, node in enumerate(order):
-        for child in below.get(node, []):
-            order.append(child)
-            parent.append(row)
-    label = [work.into[node][1] for node in order[1:]]
+    before = {node: above for node, (above, _) in sorted(work.into.items())}
+    nodes, parent = parents_first(work.root, before)
+    label = [work.into[node][1] for node in nodes[1:]]
     label = [label[0] if label else int(Label.TRUNK), *label]
-    held: Ints = np.array(order, np.int64)
-    return Skeleton.build(work.nodes[held], parent, label, superpoint=held)
+    return Skeleton.build(work.nodes[nodes], parent, label, superpoint=nodes)

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.evaluate.arms import COUNTS
 from prunus.evaluate.compared import Side, compared, one_to_one, overlap
+from prunus.measure import COUNTS
 from prunus.model import Floats, Ints, Label, Skeleton
 from prunus.model.arrays import GRID
 

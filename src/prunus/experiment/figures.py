@@ -13,11 +13,10 @@ from prunus.model import Ints
 COLOURS = {
     "paper": "#999999",
     "default": "#0072b2",
-    "default, base found": "#56b4e9",
     "oracle": "#009e73",
     "paper, oracle": "#cc79a7",
 }
-"""Of each way: Okabe and Ito's palette."""
+"""Of each way in the figures: Okabe and Ito's palette."""
 WIDE, HIGH = 380, 230
 LEFT, BOTTOM, TOP, RIGHT = 42, 34, 22, 10
 
@@ -66,7 +65,7 @@ def histogram(title: str, values: dict[str, Sequence[float]], most: float = 1.0)
     known = {way: [v for v in own if not math.isnan(v)] for way, own in values.items()}
     counts = {way: _counted(own, most, bins) for way, own in known.items()}
     top = max(int(count.max()) for count in counts.values())
-    frame = Frame(title, "edit ratio", "trials", most, top)
+    frame = Frame(title, "edit ratio", "trials", most, _round_up(top))
     each = most / bins / (len(counts) + 0.4)
     for k, (way, count) in enumerate(counts.items()):
         for b, number in enumerate(count.tolist()):

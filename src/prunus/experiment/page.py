@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable
 from html import escape
 from typing import Any
@@ -12,8 +10,10 @@ from prunus.experiment.figures import histogram, legend, scatter
 from prunus.experiment.habits import HABITS
 from prunus.experiment.tables import all_stages, before, by_label, edit_ratios
 from prunus.experiment.trial import ABLATIONS, WAYS, Record
+from prunus.io.tables import csv_bytes
 from prunus.learn.tables import PAPER
 from prunus.model import Label
+from prunus.report.page import html_table
 
 IN_PAPER: dict[str, str] = {
     "edit ratio, median": "0.30",
@@ -147,31 +147,25 @@ def html_page(results: Record, trials: list[Record]) -> str:
 <style>{STYLE}</style></head><body>
 <h1>How good the skeletons are</h1>
 <p>{escape(results["about"])}</p><ul>{about}</ul>
-{_table(["", "in the paper", *ways], main_rows(ways))}
+{html_table(["", "in the paper", *ways], main_rows(ways))}
 <p class="quiet">Median edit ratio by label: NaN where a corrected tree has none of it. Found: at
 least 80 % of a true leader, 50 % of a side branch. Shown: of what the scan shows.</p>
 <h2>Figures</h2>{legend(SHOWN)}<div class="room">{"".join(f"<div>{f}</div>" for f in figures)}</div>
 {_ablation(others | ways) if others else ""}
-<h2>By habit of the tree: median edit ratio</h2>{_table(["", *ways], habit_rows(ways))}
+<h2>By habit of the tree: median edit ratio</h2>{html_table(["", *ways], habit_rows(ways))}
 <h2>Edge confidence</h2>
-{_table(["", "in the paper", "paper's network", "ours"], edge_rows(results["edges"]))}
+{html_table(["", "in the paper", "paper's network", "ours"], edge_rows(results["edges"]))}
 </body></html>
 """
 
 
 def _ablation(ways: dict[str, Record]) -> str:
-    return "<h2>What each part brings</h2>" + _table(ABLATION_HEAD, ablation_rows(ways))
+    return "<h2>What each part brings</h2>" + html_table(ABLATION_HEAD, ablation_rows(ways))
 
 
-def csv_bytes(trials: list[Record]) -> bytes:
+def trials_csv(trials: list[Record]) -> bytes:
     """A row a trial: nested names are joined by dots."""
-    rows = [_flat(trial) for trial in trials]
-    names = list(dict.fromkeys(name for row in rows for name in row))
-    held = io.StringIO()
-    writer = csv.DictWriter(held, names, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return held.getvalue().encode()
+    return csv_bytes([_flat(trial) for trial in trials])
 
 
 def _flat(record: Record, prefix: str = "") -> Record:
@@ -182,12 +176,6 @@ def _flat(record: Record, prefix: str = "") -> Record:
         else:
             found[prefix + name] = " ".join(value) if isinstance(value, list) else value
     return found
-
-
-def _table(head: list[str], rows: list[list[str]]) -> str:
-    names = "".join(f"<th>{escape(name)}</th>" for name in head)
-    body = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows)
-    return f"<table><tr>{names}</tr>{''.join(f'<tr>{row}</tr>' for row in body)}</table>"
 
 
 def _number(value: float | None) -> str:

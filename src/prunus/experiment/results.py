@@ -12,12 +12,12 @@ from prunus.experiment.edges import edge_measures
 from prunus.experiment.page import (
     ABLATION_HEAD,
     ablation_rows,
-    csv_bytes,
     edge_rows,
     habit_rows,
     html_page,
     main_rows,
     markdown,
+    trials_csv,
 )  # fmt: skip
 from prunus.experiment.run import FIRST_SEED, run_trees
 from prunus.experiment.tables import summary
@@ -57,7 +57,7 @@ def experiment(
     }
     write_bytes(folder / "results.json", json.dumps(results | {"trials": trials}).encode())
     write_bytes(folder / "results.md", ("\n".join(lines_of(results)) + "\n").encode())
-    write_bytes(folder / "trials.csv", csv_bytes(trials))
+    write_bytes(folder / "trials.csv", trials_csv(trials))
     write_bytes(folder / "index.html", html_page(results, trials).encode())
     return results
 

@@ -13,6 +13,7 @@ from prunus.evaluate.curves import curve_measures
 from prunus.evaluate.edits import edits
 from prunus.evaluate.found import branch_measures
 from prunus.experiment.orchard import OracleScorer, Tree, tree_of
+from prunus.io.tables import without_nan
 from prunus.measure import shown
 from prunus.model import Label, Skeleton
 from prunus.params import Parameters
@@ -47,42 +48,36 @@ WAYS = (
 )  # fmt: skip
 
 
-def _undone(group: str, **values: Any) -> Parameters:
-    return Parameters().changed(group, **values)
-
-
-def _paper_with(group: str, **values: Any) -> Parameters:
-    return Parameters.paper().changed(group, **values)
-
-
+_PAPER, _OURS = Parameters.paper(), Parameters()
 ABLATIONS = (
     Way(
         "random superpoints", "ours, but superpoints at random",
-        _undone("superpoints", place="random"),
+        _OURS.changed("superpoints", place="random"),
     ),
     Way(
-        "paper's score", "ours, but the paper's score and search", _undone("search", score="paper")
+        "paper's score", "ours, but the paper's score and search",
+        _OURS.changed("search", score="paper"),
     ),
-    Way("paper's network", "ours, but its network", _undone("confidence", edge_net="paper")),
+    Way("paper's network", "ours, but its network", _OURS.changed("confidence", edge_net="paper")),
     Way(
         "paper + our network", "the paper's, but our network",
-        _paper_with("confidence", edge_net="ours"),
+        _PAPER.changed("confidence", edge_net="ours"),
     ),
     Way(
         "paper + floor", "the paper's, hopeless edges left out",
-        _paper_with("confidence", floor=0.30),
+        _PAPER.changed("confidence", floor=0.30),
     ),
-    Way("paper + refine", "the paper's, refined", _paper_with("search", refine=True)),
+    Way("paper + refine", "the paper's, refined", _PAPER.changed("search", refine=True)),
     Way(
-        "paper + stubs", "the paper's, stubs dropped", _paper_with("leaders", min_length=0.35)
+        "paper + stubs", "the paper's, stubs dropped", _PAPER.changed("leaders", min_length=0.35)
     ),
     Way(
         "paper + several", "the paper's, several side branches a piece",
-        _paper_with("side_branches", several=True),
+        _PAPER.changed("side_branches", several=True),
     ),
     Way(
         "paper + axes", "the paper's, superpoints on axes",
-        _paper_with("superpoints", place="axes"),
+        _PAPER.changed("superpoints", place="axes"),
     ),
 )  # fmt: skip
 """What each part brings: ours with one thing undone, the paper's with one thing done."""
@@ -130,9 +125,9 @@ def judged(result: Result, tree: Tree) -> Record:
         "edits": counts,
         "score": score_of(found, result),
         "score_of_corrected": score_of(right, result),
-        "curves": _plain(curve_measures(found, tree.truth)),
-        "branches": _plain(branch_measures(found, tree.truth)),
-        "branches_shown": _plain(branch_measures(found, shown(tree.truth, tree.counts))),
+        "curves": without_nan(curve_measures(found, tree.truth)),
+        "branches": without_nan(branch_measures(found, tree.truth)),
+        "branches_shown": without_nan(branch_measures(found, shown(tree.truth, tree.counts))),
     }
 
 
@@ -148,8 +143,3 @@ def score_of(skeleton: Skeleton, result: Result) -> float:
     ends = np.sort(skeleton.superpoint[skeleton.edges], axis=1).tolist()
     confidence = [float("nan"), *(known.get((i, j), 0.0) for i, j in ends)]
     return skel_score(replace(skeleton, confidence=np.array(confidence)), result.params)
-
-
-def _plain(measures: dict[str, float]) -> dict[str, float | None]:
-    """Measures as JSON has them: null where there is none."""
-    return {name: None if np.isnan(value) else value for name, value in measures.items()}

@@ -3,9 +3,10 @@
 from prunus.measure.branches import Branch, branch_of_rows, branches, lengths_by_label
 from prunus.measure.leaders import Leader, leaders
 from prunus.measure.remarks import remarks
-from prunus.measure.seen import counting_rows, shown
+from prunus.measure.seen import COUNTS, counting_rows, shown
 
 __all__ = [
+    "COUNTS",
     "Branch",
     "Leader",
     "branch_of_rows",

@@ -8,7 +8,7 @@ from prunus.model.arrays import Bools, Floats, Ints
 from prunus.model.cloud import FRAMES, PointCloud, RigidMotion
 from prunus.model.graph import CandidateGraph, ScoredGraph, SeededGraph, Superpoints
 from prunus.model.kind import Kind
-from prunus.model.skeleton import Label, Lines, Skeleton
+from prunus.model.skeleton import Label, Lines, Skeleton, parents_first
 
 __all__ = [
     "FRAMES",
@@ -25,4 +25,5 @@ __all__ = [
     "SeededGraph",
     "Skeleton",
     "Superpoints",
+    "parents_first",
 ]

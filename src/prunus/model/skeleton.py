@@ -40,6 +40,22 @@ class Label(IntEnum):
             ) from None
 
 
+def parents_first(base: int, before: dict[int, int]) -> tuple[list[int], list[int]]:
+    """The nodes of a tree, the base first, and the row (M,) of the one before each; -1 first.
+
+    `before` is the node before each node; those of one node come in its order.
+    """
+    below: dict[int, list[int]] = {}
+    for node, above in before.items():
+        below.setdefault(above, []).append(node)
+    nodes, parent = [base], [-1]
+    for row, node in enumerate(nodes):
+        for child in below.get(node, []):
+            nodes.append(child)
+            parent.append(row)
+    return nodes, parent
+
+
 @dataclass(frozen=True, eq=False)
 class Lines:
     """Points (N, 3), metres, and edges (E, 2) between them: what any skeleton is."""

@@ -118,7 +118,7 @@ def _labels(result: Result) -> str:
         count = len(branches(skeleton, label))
         edges = int(skeleton.edges_with(label).sum())
         rows.append([name, str(count), str(edges), f"{lengths[label]:.2f}"])
-    return "<h2>Labels</h2>" + _table(["", "branches", "edges", "length [m]"], rows)
+    return "<h2>Labels</h2>" + html_table(["", "branches", "edges", "length [m]"], rows)
 
 
 def _leaders(result: Result) -> str:
@@ -133,7 +133,7 @@ def _leaders(result: Result) -> str:
         for number, leader in enumerate(leaders(result.in_house), 1)
     ]
     names = ["leader", "height [m]", "lean [deg]", "spacing [m]", "side branches"]
-    return "<h2>Leaders, from left to right</h2>" + _table(names, rows)
+    return "<h2>Leaders, from left to right</h2>" + html_table(names, rows)
 
 
 def _seconds(result: Result) -> str:
@@ -144,10 +144,11 @@ def _seconds(result: Result) -> str:
         for name, (cpu, wall) in [*stages, ("total", total)]
     ]
     note = '<p class="quiet">The first tree of a run also loads the compiled kernels.</p>'
-    return "<h2>Time by stage</h2>" + _table(["stage", "CPU [ms]", "wall [ms]"], rows) + note
+    return "<h2>Time by stage</h2>" + html_table(["stage", "CPU [ms]", "wall [ms]"], rows) + note
 
 
-def _table(names: list[str], rows: list[list[str]]) -> str:
+def html_table(names: list[str], rows: list[list[str]]) -> str:
+    """A table as HTML; the cells may hold markup."""
     head = "".join(f"<th>{name}</th>" for name in names)
     body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
     return f"<table><tr>{head}</tr>{body}</table>"

@@ -23,7 +23,8 @@ from pathlib import Path
 import numpy as np
 
 from prunus.errors import PrunusError
-from prunus.kernels.tables import ABSENT, BASE, GraphTable
+from prunus.kernels.propose import reward
+from prunus.kernels.tables import ABSENT, BASE, LABELS, GraphTable
 from prunus.model import (
     CandidateGraph,
     Floats,
@@ -35,7 +36,7 @@ from prunus.model import (
 )  # fmt: skip
 from prunus.search.directed import Directed
 from prunus.search.eligible import grammar_table
-from prunus.search.refine import Entries, refine
+from prunus.search.refine import refine
 from prunus.search.result import SearchResult, as_skeleton
 from prunus.search.score import exact
 
@@ -58,6 +59,8 @@ LEAST = 0.02
 """Probabilities below are taken for it."""
 STEP = 0.1
 """An edge as such counts as so many metres."""
+DEAR = 0.02
+"""Even a sure edge costs so much of its length on the way to a superpoint."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +108,7 @@ def edge_terms(seeded: SeededGraph, ways: Directed) -> Floats:
     """The terms (D, L, TERMS) of every directed edge under every label, metres.
 
     wood of its head; length; length x log confidence; `STEP`; how far it rises; length x how level
-    it is; length x log probability of the label. Without categories the last is 0.
+    it is; length x log probability of the label, which takes a scorer that tells categories.
     """
     length, up = ways.length, ways.vector[:, 2]
     confidence = np.maximum(seeded.confidence[ways.edge], LEAST)
@@ -120,7 +123,7 @@ def edge_terms(seeded: SeededGraph, ways: Directed) -> Floats:
     ]
     terms = np.empty((len(length), len(Label), len(TERMS)))
     terms[:, :, :-1] = np.stack(alike, axis=1)[:, None]
-    terms[:, :, -1] = length[:, None] * np.log(category) if category.size else 0.0
+    terms[:, :, -1] = length[:, None] * np.log(category)
     return terms
 
 
@@ -151,15 +154,9 @@ def learned_table(seeded: SeededGraph, ways: Directed, score: LearnedScore) -> G
 
 
 def search_learned(seeded: SeededGraph, score: LearnedScore) -> SearchResult:
-    """The best skeleton found under a learned score, side branches included."""
-    best, table, history = best_tree(seeded, score)
-    return SearchResult(as_skeleton(best, table, seeded), float(history[-1]), history)
+    """The best skeleton found under a learned score, side branches included; its score by sweep.
 
-
-def best_tree(seeded: SeededGraph, score: LearnedScore) -> tuple[Entries, GraphTable, Floats]:
-    """The best skeleton found as a row of entries (N,), its table, and the score by sweep (I,).
-
-    It begins with the cheapest way from the base to every superpoint (Len (1 - Conf)).
+    The climb begins with the cheapest way from the base to every superpoint (Len (1 - Conf)).
     """
     ways = Directed.of(seeded)
     table = learned_table(seeded, ways, score)
@@ -168,44 +165,28 @@ def best_tree(seeded: SeededGraph, score: LearnedScore) -> tuple[Entries, GraphT
     cost = ways.length * (1 - (1 - DEAR) * seeded.confidence[ways.edge])
     anywhere = np.ones(len(entry), np.bool_)
     best, history = refine(entry, table, grammar_table(tuple(Label)), cost, anywhere)
-    return best, table, history
-
-
-DEAR = 0.02
-"""Even a sure edge costs so much of its length on the way to a superpoint."""
-
-
-def terms_of(skeleton: Skeleton, seeded: SeededGraph) -> tuple[Floats, Floats]:
-    """The terms (L, TERMS) of a skeleton on these superpoints, and its turns (CHANGES, TURNS + 1).
-
-    The learned score is linear in both. Edges that are no candidates have no confidence.
-    """
-    ends = np.sort(skeleton.superpoint[skeleton.edges], axis=1)
-    known = set(map(tuple, seeded.edges.tolist()))
-    absent = [pair for pair in ends.tolist() if tuple(pair) not in known]
-    more = _with_edges(seeded, np.array(absent, np.int64).reshape(-1, 2))
-    ways = Directed.of(more)
-    terms, step = edge_terms(more, ways), turn_steps(ways)
-    heads = zip(ways.tail.tolist(), ways.head.tolist(), strict=True)
-    number = {pair: d for d, pair in enumerate(heads)}
-    edge = np.zeros((len(Label), len(TERMS)))
-    turn = np.zeros((len(CHANGES), len(TURNS) + 1))
-    way = np.zeros(len(skeleton), np.int64)
-    for row in range(1, len(skeleton)):
-        above, label = int(skeleton.parent[row]), Label(skeleton.label[row])
-        d = number[int(skeleton.superpoint[above]), int(skeleton.superpoint[row])]
-        way[row] = d
-        edge[label] += terms[d, label]
-        change = (Label(skeleton.label[above]), label)
-        if above > 0 and change in CHANGES:
-            turn[CHANGES.index(change), step[ways.pair_of[way[above]] + d]] += 1
-    return edge, turn
+    return SearchResult(as_skeleton(best, table, seeded), float(history[-1]), history)
 
 
 def learned_score_of(skeleton: Skeleton, seeded: SeededGraph, score: LearnedScore) -> float:
-    """The learned score of any skeleton on these superpoints."""
-    edge, turn = terms_of(skeleton, seeded)
-    return float((edge * score.edge).sum() + (turn * score.turn).sum())
+    """The learned score of any skeleton on these superpoints.
+
+    Edges that are no candidates have no confidence.
+    """
+    ends = np.sort(skeleton.superpoint[skeleton.edges], axis=1).tolist()
+    known = set(map(tuple, seeded.edges.tolist()))
+    absent = [pair for pair in ends if tuple(pair) not in known]
+    more = _with_edges(seeded, np.array(absent, np.int64).reshape(-1, 2))
+    ways = Directed.of(more)
+    table = learned_table(more, ways, score)
+    heads = zip(ways.tail.tolist(), ways.head.tolist(), strict=True)
+    number = {pair: d for d, pair in enumerate(heads)}
+    total, entry = 0.0, [BASE]
+    for row, (above, node) in enumerate(skeleton.superpoint[skeleton.edges].tolist(), 1):
+        d, label = number[above, node], int(skeleton.label[row])
+        total += reward(table, entry[skeleton.parent[row]], d, label)
+        entry.append(d * LABELS + label)
+    return total
 
 
 def _with_edges(seeded: SeededGraph, absent: Ints) -> SeededGraph:
@@ -216,7 +197,7 @@ def _with_edges(seeded: SeededGraph, absent: Ints) -> SeededGraph:
         ScoredGraph(
             CandidateGraph(seeded.superpoints, np.concatenate([seeded.edges, absent])),
             np.concatenate([scored.confidence, np.zeros(len(absent))]),
-            np.concatenate([scored.category, np.full((len(absent), kinds), 1 / max(kinds, 1))]),
+            np.concatenate([scored.category, np.full((len(absent), kinds), 1 / kinds)]),
             scored.scorer,
         ),
         seeded.base,

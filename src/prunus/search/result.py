@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from prunus.kernels.tables import LABELS, GraphTable
-from prunus.model import Floats, SeededGraph, Skeleton
+from prunus.model import Floats, SeededGraph, Skeleton, parents_first
 from prunus.search.refine import Entries
 
 
@@ -22,15 +22,10 @@ class SearchResult:
 
 def as_skeleton(entry: Entries, graph: GraphTable, seeded: SeededGraph) -> Skeleton:
     """The skeleton of a row of entries, parents before children."""
-    below: dict[int, list[int]] = {}
-    for child in np.flatnonzero(entry >= 0).tolist():
-        below.setdefault(int(graph.tail[entry[child] // LABELS]), []).append(child)
-    nodes, parent, label = [seeded.base], [-1], [0]
-    for row, node in enumerate(nodes):
-        for child in below.get(node, []):
-            nodes.append(child)
-            parent.append(row)
-            label.append(int(entry[child] % LABELS))
+    grown = np.flatnonzero(entry >= 0)
+    tails = graph.tail[entry[grown] // LABELS].tolist()
+    nodes, parent = parents_first(seeded.base, dict(zip(grown.tolist(), tails, strict=True)))
+    label = (entry[nodes] % LABELS).tolist()
     label[0] = label[1] if len(label) > 1 else 0
     return Skeleton.build(
         seeded.xyz[nodes],
