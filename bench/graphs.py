@@ -20,7 +20,7 @@ from prunus.model import (
 from prunus.params import Parameters
 from prunus.simulate import simulate_scan
 from prunus.stages.candidates import find_candidates
-from prunus.stages.confidence import HandmadeScorer, score_edges
+from prunus.stages.confidence import HandmadeScorer, hopeful, score_edges
 from prunus.stages.seeds import find_seeds
 from prunus.stages.superpoints import find_superpoints
 
@@ -109,4 +109,5 @@ def _scored(
 ) -> ScoredGraph:
     superpoints = find_superpoints(PointCloud.from_xyz(points), PARAMS.superpoints, rng)
     confidence = PARAMS.changed("confidence", floor=floor).confidence
-    return score_edges(find_candidates(superpoints), HandmadeScorer(), confidence)
+    scored = score_edges(find_candidates(superpoints), HandmadeScorer())
+    return hopeful(scored, HandmadeScorer(), confidence)

@@ -10,10 +10,12 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from prunus.cli import app
-from prunus.io.clouds import write_cloud
+from prunus.io.clouds import read_cloud, write_cloud
+from prunus.io.ply import read_ply
 from prunus.io.skeletons import read_record, read_skeleton
 from prunus.params import Parameters
 from prunus.rules import offenders
+from prunus.simulate.orchard import simulate_tree
 from tests.conftest import simulated
 
 OUTPUTS = {"skeleton.json", "skeleton.swc", "skeleton.ply", "params.toml", "report.html"}
@@ -268,3 +270,49 @@ def test_other_scorers_can_be_asked_for(words: list[str], scan: Path, tmp_path: 
     (tmp_path / "paper.toml").write_text('[confidence]\nedge_net = "paper"\n[search]\nK = 20\n')
     asked = [tmp_path / word if word.endswith(".toml") else word for word in words]
     assert prunus("skeletonize", scan, "-o", tmp_path / "out", *FAST, *asked).exit_code == 0
+
+
+@pytest.fixture(scope="module")
+def raw(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return simulate_tree(tmp_path_factory.mktemp("row"), 500_000, "field", views=False) / "scan.ply"
+
+
+def test_one_tree_is_taken_out_of_a_raw_scan(raw: Path, tmp_path: Path) -> None:
+    done = prunus("isolate", raw, "-o", tmp_path / "tree.ply", "--frame", "z-up")
+    assert done.exit_code == 0
+    assert "points are the tree; left out: " in done.stdout
+    whole, tree = read_cloud(raw), read_cloud(tmp_path / "tree.ply")
+    assert 0.05 * len(whole.xyz) < len(tree.xyz) < 0.5 * len(whole.xyz)
+    places = {tuple(point) for point in whole.xyz.tolist()}
+    assert {tuple(point) for point in tree.xyz.tolist()} <= places
+
+
+def test_trees_are_listed_and_chosen_and_all_written(raw: Path, tmp_path: Path) -> None:
+    listed = prunus("isolate", raw, "--list").stdout.splitlines()
+    assert len(listed) > 1
+    at = listed[1].split("--at ")[1].split()[:3]
+    done = prunus("isolate", raw, "-o", tmp_path / "b.ply", "--at", *at)
+    assert done.exit_code == 0
+    assert prunus("isolate", raw, "-o", tmp_path / "t.ply", "--all").exit_code == 0
+    second = read_cloud(tmp_path / "t_2.ply").xyz
+    chosen = {tuple(point) for point in read_cloud(tmp_path / "b.ply").xyz.tolist()}
+    assert np.mean([tuple(point) in chosen for point in second.tolist()]) > 0.95
+
+
+def test_classes_are_written_for_every_point(raw: Path, tmp_path: Path) -> None:
+    path = tmp_path / "classes.ply"
+    assert prunus("isolate", raw, "-o", path, "--classes").exit_code == 0
+    vertex = read_ply(path.read_bytes(), path)["vertex"]
+    assert len(vertex) == len(read_cloud(raw).xyz)
+    assert set(vertex["kind"]) >= {0, 2, 3}
+    assert prunus("isolate", raw, "-o", tmp_path / "x.xyz", "--classes").exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [([], "nowhere to write to"), (["-o", "t.ply", "--at", "9", "9", "9"], "from the nearest")],
+)
+def test_isolation_says_what_it_lacks(words: list[str], message: str, raw: Path) -> None:
+    done = prunus("isolate", raw, *words)
+    assert done.exit_code == 2
+    assert message in done.stderr

@@ -8,7 +8,7 @@ import prunus
 HOME = Path(prunus.__file__).parent
 FLOORS = [
     {"cli"},
-    {"progress", "demo", "convert", "batch", "experiment", "judge"},
+    {"progress", "demo", "convert", "batch", "experiment", "isolation", "judge"},
     {"report", "evaluate", "simulate", "learn"},
     {"pipeline", "graphs", "intake"},
     {"sensing", "search", "stages", "measure", "io"},
@@ -22,6 +22,7 @@ SAME_FLOOR = {
     ("cli", "cli"),
     ("rules", "grammar"),
     ("stages", "measure"),
+    ("sensing", "stages"),
 }
 """Neighbours on one floor that may be used. No side room knows another."""
 

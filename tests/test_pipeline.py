@@ -25,7 +25,7 @@ def test_most_of_a_simulated_tree_is_found(scanned: tuple[Skeleton, PointCloud])
 def test_a_base_is_found_where_none_is_given(scanned: tuple[Skeleton, PointCloud]) -> None:
     truth, cloud = scanned
     found = skeletonize(cloud)
-    assert "no base was given" in found.warnings[0]
+    assert "no base was given" in found.notes[0]
     assert np.linalg.norm(found.skeleton.xyz[0] - truth.xyz[0]) < 0.2
 
 

@@ -150,7 +150,7 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
     if folder.exists() and not folder.is_dir():
         raise PrunusError(f"{folder}: is a file; expected a folder to write to")
     if report:
-        page = report_page(result, scan.file.path.name, scan.notes)
+        page = report_page(result, scan.file.path.name, [*scan.notes, *result.notes])
         write_bytes(folder / "report.html", page.encode())
     write_swc(folder / "skeleton.swc", result.skeleton)
     write_ply(folder / "skeleton.ply", result.skeleton)
@@ -193,7 +193,7 @@ def _record(
         "side_branches": len(branches(skeleton, Label.SIDE_BRANCH)),
         "cpu_s": columns[0],
         "wall_s": columns[1],
-        "warnings": [*scan.notes, *result.warnings],
+        "warnings": [*scan.notes, *result.notes, *result.warnings],
     }
 
 

@@ -63,6 +63,13 @@ class Scorer(StrEnum):
     HANDMADE = "handmade"
 
 
+class Network(StrEnum):
+    """What can be learned."""
+
+    EDGES = "edges"
+    ISOLATION = "isolation"
+
+
 class EdgeNet(StrEnum):
     """Edge networks."""
 
@@ -114,6 +121,9 @@ def skeletonize(
     weights: Annotated[
         Path | None, typer.Option(help="Your own network, made by `prunus train`.")
     ] = None,
+    no_isolate: Annotated[
+        bool, typer.Option("--no-isolate", help="The cloud is the tree alone: take nothing out.")
+    ] = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.html.")] = False,
     json: Annotated[
         bool, typer.Option("--json", help="One line of JSON a tree on standard output.")
@@ -132,13 +142,62 @@ def skeletonize(
 
     try:
         options = Options(
-            base, frame.value, unit and unit.value, _parameters(params, points), seed,
+            base, frame.value, unit and unit.value, _parameters(params, points, no_isolate), seed,
             scorer.value, weights, not no_report,
         )  # fmt: skip
     except PrunusError as error:
         _stop(error)
     tasks, failed = plan(clouds, output)
     _report(tasks, failed, options, json, jobs)
+
+
+@app.command()
+def isolate(
+    raw: Annotated[Path, typer.Argument(help="A raw scan: ground, posts, wires, neighbours.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="The tree's own points (PLY, XYZ, NPZ).")
+    ] = None,
+    at: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(help="Where the tree stands, in the frame of the file. [default: the middle]"),
+    ] = None,
+    list_: Annotated[bool, typer.Option("--list", help="Only list the trees in view.")] = False,
+    every: Annotated[bool, typer.Option("--all", help="Write each tree in view.")] = False,
+    classes: Annotated[
+        bool, typer.Option("--classes", help="Write all points, with what each is (PLY).")
+    ] = False,
+    frame: Annotated[
+        Frame, typer.Option(help="Frame of the file; auto goes by the evidence in the cloud.")
+    ] = Frame.AUTO,
+    unit: Annotated[
+        Unit | None, typer.Option(help="Unit of the file. [default: m, checked]")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
+) -> None:
+    """Take one tree out of a raw scan; the scan itself stays as it is.
+
+    What is there: `prunus isolate raw.ply --list`
+
+    One of them: `prunus isolate raw.ply -o tree.ply --at 0.35 1.10 1.45`
+
+    To see what each point was taken for: `prunus isolate raw.ply -o classes.ply --classes`
+    """
+    from prunus.isolation import Opened, list_trees, write_all, write_tree
+
+    try:
+        if output is None and not list_:
+            raise PrunusError("nowhere to write to: say -o TREE.ply, or --list")
+        opened = Opened.of(raw, frame.value, unit and unit.value, seed)
+        if output is None or list_:
+            lines = list_trees(opened)
+        elif every:
+            lines = write_all(opened, output, classes)
+        else:
+            lines = write_tree(opened, output, at, classes)
+    except PrunusError as error:
+        _stop(error)
+    for line in lines:
+        typer.echo(line)
 
 
 @app.command()
@@ -195,6 +254,9 @@ def simulate(
 def train(
     folder: Annotated[Path, typer.Argument(help="Simulated scans, from `prunus simulate`.")],
     output: Annotated[Path, typer.Option("-o", "--output", help="Weights to write (.onnx).")],
+    network: Annotated[
+        Network, typer.Option(help="edges: their confidence; isolation: one tree out of a scan.")
+    ] = Network.EDGES,
     edge_net: Annotated[
         EdgeNet, typer.Option(help="paper: Appendix A; ours: edges in context.")
     ] = EdgeNet.OURS,
@@ -202,19 +264,26 @@ def train(
     epochs: Annotated[int | None, typer.Option(min=1, help="[default: as the recipe]")] = None,
     jobs: Annotated[int, typer.Option(min=1, help="Scans at the same time.")] = os.cpu_count() or 1,
 ) -> None:
-    """Learn the edge confidence from simulated scans; prints the paper's two tables.
+    """Learn the edge confidence (or isolation) from simulated scans; prints the paper's tables.
 
     `prunus train orchard -o mine.onnx`, then `prunus skeletonize tree.ply --weights mine.onnx`
     """
-    from prunus.learn.school import school
+    from prunus.learn.school import isolation_school, school
     from prunus.learn.tables import table
     from prunus.progress import bar_of, progress_bar
 
     try:
         with progress_bar() as bar:
-            report = school(folder, output, edge_net.value, seed, epochs, jobs, bar_of(bar))
+            if network == Network.ISOLATION:
+                report = isolation_school(folder, output, seed, epochs, jobs, bar_of(bar))
+            else:
+                report = school(folder, output, edge_net.value, seed, epochs, jobs, bar_of(bar))
     except PrunusError as error:
         _stop(error)
+    if network == Network.ISOLATION:
+        kept, removed = report["test"]
+        typer.echo(f"test trees: {kept:.1%} of the points kept, {removed:.1%} of all others out")
+        return
     for line in table(report["validation"], report["test"]):
         typer.echo(line)
 
@@ -305,13 +374,15 @@ def convert(
         _stop(error)
 
 
-def _parameters(path: Path | None, points: str | None) -> Parameters:
+def _parameters(path: Path | None, points: str | None, no_isolate: bool) -> Parameters:
     from prunus.params import Parameters
 
     if path == Path("paper") and not path.exists():
         params = Parameters.paper()
     else:
         params = Parameters() if path is None else Parameters.from_toml(path)
+    if no_isolate:
+        params = params.changed("isolation", isolate="never")
     if points is None:
         return params
     if points not in ("all", "none") and not points.isdigit():

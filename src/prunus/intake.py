@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from prunus.errors import PrunusError
 from prunus.io.clouds import FileCloud
 from prunus.io.clouds import read_cloud as read_file
 from prunus.model import FRAMES, PointCloud
+from prunus.sensing.level import find_turn
 from prunus.sensing.orient import find_frame
 
 
@@ -32,12 +35,15 @@ def open_scan(path: str | Path, frame: str = "auto", unit: str | None = None) ->
     file = read_file(path, unit)
     notes = list(file.notes)
     seems, why = find_frame(file.xyz)
+    turn = None
     if frame == "auto":
         frame = seems
         notes.append(f"frame {frame}: {why}")
+        turn, turned = find_turn(file.xyz @ FRAMES[frame].T, np.random.default_rng(0))
+        notes += turned
     elif seems != frame and not why.startswith("undecided"):
         notes.append(f"frame {frame} as asked, but the cloud looks like {seems}: {why}")
-    return Scan(PointCloud.from_xyz(file.xyz, frame, file.rgb), file, frame, notes)
+    return Scan(PointCloud.from_xyz(file.xyz, frame, file.rgb, turn), file, frame, notes)
 
 
 def read_cloud(path: str | Path, frame: str = "auto", unit: str | None = None) -> PointCloud:

@@ -38,6 +38,17 @@ class Input(_Group):
         return "all" if value is None or value == "none" else value
 
 
+class Isolation(_Group):
+    """One tree out of a raw scan (beyond the paper, where people do it by hand)."""
+
+    isolate: Literal["auto", "always", "never"] = _number(
+        "auto", "-", "-", "'auto': where the scan is evidently raw, see raw_from"
+    )
+    raw_from: float = _number(
+        0.08, "-", "1", "a scan is raw when so large a share of it is not the tree", gt=0, lt=1
+    )
+
+
 class Cover(_Group):
     """Superpoint selection."""
 
@@ -159,6 +170,7 @@ class Parameters(_Group):
     """
 
     input: Input = Input()
+    isolation: Isolation = Isolation()
     superpoints: Cover = Cover()
     confidence: Confidence = Confidence()
     tips: Tips = Tips()
@@ -172,6 +184,7 @@ class Parameters(_Group):
     def paper(cls) -> Parameters:
         """The method as the paper has it, without what we do beyond it."""
         return cls(
+            isolation=Isolation(isolate="never"),
             superpoints=Cover(place="random"),
             confidence=Confidence(floor=0.0, edge_net="paper"),
             search=Search(score="paper", refine=False),

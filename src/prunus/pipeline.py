@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,13 +13,15 @@ from numpy.typing import ArrayLike
 
 from prunus.errors import PrunusError
 from prunus.measure import remarks
-from prunus.model import Floats, PointCloud, SeededGraph, Skeleton
+from prunus.model import Floats, PointCloud, ScoredGraph, SeededGraph, Skeleton
 from prunus.params import Parameters
 from prunus.search import SearchResult, search, search_learned, shipped_score, skel_score
+from prunus.sensing.isolate import Isolated, Scene, isolate, judged_graph
+from prunus.sensing.trunks import find_foot
 from prunus.stages.candidates import find_candidates
-from prunus.stages.confidence import EdgeScorer, score_edges
+from prunus.stages.confidence import EdgeScorer, hopeful, score_edges
 from prunus.stages.networks import NetworkScorer
-from prunus.stages.seeds import find_seeds
+from prunus.stages.seeds import find_seeds, near_to
 from prunus.stages.sidebranches import find_side_branches
 from prunus.stages.stubs import drop_stubs
 from prunus.stages.superpoints import find_superpoints
@@ -33,6 +35,7 @@ class Result:
     """The skeleton and the evidence: graph, score, history (I,) of best scores, timings, warnings.
 
     `in_house` is the skeleton in the house frame (Z up); `skeleton` in the frame of the input.
+    `scan` is all that was given; `isolated` what each point of it is, where it was a raw scan.
     """
 
     in_house: Skeleton
@@ -43,6 +46,9 @@ class Result:
     params: Parameters
     seed: int
     warnings: list[str]
+    notes: list[str]
+    scan: PointCloud
+    isolated: Isolated | None
 
     @cached_property
     def skeleton(self) -> Skeleton:
@@ -70,18 +76,22 @@ def skeletonize(
     rng = np.random.default_rng(seed)
     seconds: Seconds = {}
 
-    with _timed(seconds, "sample"):
-        points = params.input.points
-        cloud = cloud.sample(None if points == "all" else points, rng)
-    with _timed(seconds, "superpoints"):
-        superpoints = find_superpoints(cloud, params.superpoints, rng)
-    with _timed(seconds, "candidates"):
-        candidates = find_candidates(superpoints)
-    with _timed(seconds, "confidence"):
-        scorer = scorer or NetworkScorer.shipped(params.confidence.edge_net)
-        scored = score_edges(candidates, scorer, params.confidence)
+    scorer = scorer or NetworkScorer.shipped(params.confidence.edge_net)
+    scan, notes = cloud, list[str]()
+    scored = _scored(cloud, scorer, params, rng, seconds)
+    with _timed(seconds, "isolate"):
+        isolated = _isolated(cloud, scored, scorer, at, params, rng)
+    if isolated is not None:
+        cloud = cloud.take(isolated.target)
+        scored = _scored(cloud, scorer, params, rng, seconds)
+        notes.append(isolated.told())
     with _timed(seconds, "seeds"):
-        seeded, warnings = find_seeds(scored, params, at)
+        foot = find_foot(cloud, scored) if at is None else None
+        hoped = hopeful(scored, scorer, params.confidence)
+        seeded, warnings = find_seeds(hoped, params, foot if at is None else at)
+    if foot is not None:
+        place = ", ".join(f"{value:.2f}" for value in cloud.to_input.apply(foot))
+        notes.append(f"no base was given: the foot of the trunk was found at ({place})")
     learned = params.search.score == "learned" and scored.category.size > 0
     if learned:
         with _timed(seconds, "search"):
@@ -90,9 +100,68 @@ def skeletonize(
         found = _as_in_the_paper(seeded, params, rng, seconds)
     with _timed(seconds, "measures"):
         warnings += remarks(found.skeleton, seeded, for_tips=not learned)
+    skeleton = found.skeleton if foot is None else _standing_at(foot, found.skeleton)
     return Result(
-        found.skeleton, seeded, found.score, found.history, seconds, params, seed, warnings
-    )
+        skeleton, seeded, found.score, found.history, seconds, params, seed, warnings,
+        notes, scan, isolated,
+    )  # fmt: skip
+
+
+def _scored(
+    cloud: PointCloud,
+    scorer: EdgeScorer,
+    params: Parameters,
+    rng: np.random.Generator,
+    seconds: Seconds,
+) -> ScoredGraph:
+    """All candidate edges of points drawn from a cloud, with their confidence."""
+    with _timed(seconds, "sample"):
+        points = params.input.points
+        drawn = cloud.sample(None if points == "all" else points, rng)
+    with _timed(seconds, "superpoints"):
+        superpoints = find_superpoints(drawn, params.superpoints, rng)
+    with _timed(seconds, "candidates"):
+        candidates = find_candidates(superpoints)
+    with _timed(seconds, "confidence"):
+        return score_edges(candidates, scorer)
+
+
+def _isolated(
+    cloud: PointCloud,
+    scored: ScoredGraph,
+    scorer: EdgeScorer,
+    at: Floats | None,
+    params: Parameters,
+    rng: np.random.Generator,
+) -> Isolated | None:
+    """The tree in a raw scan; None where the cloud is one tree already, or nothing is asked."""
+    wanted = params.isolation.isolate
+    if wanted == "never" or (at is not None and not near_to(scored, at)):
+        return None
+    known = scored if scorer.name == "cnn" else judged_graph(cloud, params, rng)
+    if len(known.edges) == 0:
+        return None
+    scene = Scene.of(cloud, known)
+    if wanted == "auto" and at is None and not scene.trees:
+        return None
+    isolated = isolate(scene, at)
+    raw = isolated.removed >= params.isolation.raw_from and isolated.target.mean() >= LEAST_LEFT
+    return isolated if raw or wanted == "always" else None
+
+
+LEAST_LEFT = 0.02
+"""Where less than this share of a scan would be left, it is not taken apart unasked."""
+
+
+def _standing_at(foot: Floats, skeleton: Skeleton) -> Skeleton:
+    """The skeleton with its base at the foot of its trunk, where that is beside its lowest node."""
+    if np.linalg.norm(skeleton.xyz[0] - foot) > FOOT_REACH:
+        return skeleton
+    return replace(skeleton, xyz=np.concatenate([foot[None], skeleton.xyz[1:]]))
+
+
+FOOT_REACH = 0.15
+"""The foot of a trunk is so near to its lowest superpoint, metres."""
 
 
 def _as_in_the_paper(
@@ -112,7 +181,9 @@ def _as_in_the_paper(
 def _timed(seconds: Seconds, stage: str) -> Iterator[None]:
     cpu, wall = time.process_time(), time.perf_counter()
     yield
-    seconds[stage] = (time.process_time() - cpu, time.perf_counter() - wall)
+    before = seconds.get(stage, (0.0, 0.0))
+    spent = time.process_time() - cpu, time.perf_counter() - wall
+    seconds[stage] = (before[0] + spent[0], before[1] + spent[1])
 
 
 def _point(base: ArrayLike) -> Floats:

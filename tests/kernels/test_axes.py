@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from prunus.kernels.axes import contract, count_nearest, cover_along, main_axis
+from prunus.kernels.axes import contract, cover_along, main_axis
 from prunus.model import Floats
 
 
@@ -61,11 +61,3 @@ def test_rods_cover_every_point_once_and_no_neighbour(rng: np.random.Generator) 
         assert np.diff(heights).min() > 0.08
         assert heights[0] <= 0.08 and heights[-1] >= 0.92
     assert held.max() == 17
-
-
-def test_every_point_counts_for_its_nearest_node_alone(rng: np.random.Generator) -> None:
-    xyz, nodes = rng.random((400, 3)), rng.random((20, 3))
-    away = np.linalg.norm(xyz[:, None] - nodes[None], axis=2)
-    near = away.min(axis=1) <= 0.3
-    expected = np.bincount(away.argmin(axis=1)[near], minlength=20)
-    assert np.array_equal(count_nearest(xyz, nodes, 0.3), expected)

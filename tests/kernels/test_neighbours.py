@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from prunus.kernels import reference
-from prunus.kernels.neighbours import cover, within
+from prunus.kernels.neighbours import cover, nearest, within
 
 
 def clouds(seed: int, count: int) -> np.ndarray:
@@ -49,3 +49,11 @@ def test_far_strays_cost_no_memory() -> None:
     start, members = within(points, points, 0.1)
     assert members.tolist() == [0, 1]
     assert start.tolist() == [0, 1, 2]
+
+
+def test_every_point_goes_to_its_nearest_node_within_reach(rng: np.random.Generator) -> None:
+    xyz, nodes = rng.random((400, 3)), rng.random((20, 3))
+    away = np.linalg.norm(xyz[:, None] - nodes[None], axis=2)
+    expected = np.where(away.min(axis=1) <= 0.3, away.argmin(axis=1), -1)
+    assert np.array_equal(nearest(xyz, nodes, 0.3), expected)
+    assert (expected < 0).any()

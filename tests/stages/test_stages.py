@@ -10,6 +10,7 @@ from prunus.stages.candidates import find_candidates
 from prunus.stages.confidence import (
     ConstantScorer,
     HandmadeScorer,
+    hopeful,
     image_features,
     longest_run,
     score_edges,
@@ -32,7 +33,8 @@ def scored(points: Floats, rng: np.random.Generator) -> ScoredGraph:
     """As in the paper: superpoints at random."""
     at_random = Parameters.paper().superpoints
     superpoints = find_superpoints(PointCloud.from_xyz(points), at_random, rng)
-    return score_edges(find_candidates(superpoints), HandmadeScorer(), PARAMS.confidence)
+    all_of_them = score_edges(find_candidates(superpoints), HandmadeScorer())
+    return hopeful(all_of_them, HandmadeScorer(), PARAMS.confidence)
 
 
 @pytest.mark.parametrize(("params", "most"), [(PARAMS, 25), (Parameters.paper(), 14)])
@@ -87,8 +89,9 @@ def test_hopeless_edges_are_left_out_and_a_constant_scorer_leaves_all(
 ) -> None:
     cloud = PointCloud.from_xyz(rod([0, 0, 0], [0, 0, 1], rng))
     candidates = find_candidates(find_superpoints(cloud, PARAMS.superpoints, rng))
-    some = score_edges(candidates, ConstantScorer(0.5), PARAMS.confidence)
-    none = score_edges(candidates, ConstantScorer(0.01, floor=0.05), PARAMS.confidence)
+    half, hardly = ConstantScorer(0.5), ConstantScorer(0.01, floor=0.05)
+    some = hopeful(score_edges(candidates, half), half, PARAMS.confidence)
+    none = hopeful(score_edges(candidates, hardly), hardly, PARAMS.confidence)
     assert len(some.edges) == len(candidates.edges)
     assert len(none.edges) == 0
     assert some.scorer == "constant"

@@ -122,21 +122,3 @@ def cover_along(
         chosen[N] = p
         N += 1
     return chosen[:N].copy(), held[:N].copy()
-
-
-@kernel
-def count_nearest(xyz: Floats, nodes: Floats, reach: float) -> Ints:
-    """How many of the points (P, 3) are nearest to each node (N,), none farther than `reach`."""
-    start, members = within(nodes, xyz, reach)
-    count = np.zeros(len(nodes), np.int64)
-    for p in range(len(xyz)):
-        best, nearest = -1, np.inf
-        for slot in range(start[p], start[p + 1]):
-            away = 0.0
-            for a in range(3):
-                away += (nodes[members[slot], a] - xyz[p, a]) ** 2
-            if away < nearest:
-                best, nearest = members[slot], away
-        if best >= 0:
-            count[best] += 1
-    return count

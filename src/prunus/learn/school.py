@@ -69,5 +69,42 @@ def school(
     return report
 
 
+TRAINING = 0.9
+"""So large a share of the trees, by name, are for learning isolation; the rest are for the test."""
+
+
+def isolation_school(
+    folder: Path, weights: Path, seed: int, epochs: int | None, jobs: int, watch: Watch[Any]
+) -> dict[str, Any]:
+    """Train the isolation network on the scans in a folder; writes `weights` and a JSON beside it.
+
+    Returns what was written: the shares kept and removed on test trees, and how it was made.
+    """
+    try:
+        from prunus.learn import isolation
+    except ImportError as error:
+        raise PrunusError("training needs torch and onnx: pip install 'prunus[train]'") from error
+    folders = scans_in(folder)
+    if len(folders) < 5:
+        raise PrunusError(f"{folder}: {len(folders)} simulated trees; expected at least 5")
+    made = list(watch(isolation.row_examples(folders, seed, jobs), "examples", len(folders)))
+    first_test = int(TRAINING * len(folders))
+    training = [example for of_scan in made[:first_test] for example in of_scan]
+    test = [example for of_scan in made[first_test:] for example in of_scan]
+    epochs = epochs or isolation.EPOCHS
+    rng, losses = np.random.default_rng(seed), []
+    for net, loss in watch(isolation.train_isolation(training, epochs, rng), "epochs", epochs):
+        last = net
+        losses.append(loss)
+    report = {
+        "network": "isolation", "seed": seed, "epochs": epochs,
+        "trees": [first_test, len(folders) - first_test], "losses": losses,
+        "test": isolation.kept_and_removed(last, test),
+    }  # fmt: skip
+    write_bytes(weights, isolation.isolation_bytes(last, test[0]))
+    write_bytes(weights.with_suffix(".json"), json.dumps(report, indent=1).encode())
+    return report
+
+
 def _edges(examples: list[Example]) -> int:
     return sum(len(example.category) for example in examples)

@@ -61,8 +61,16 @@ class PointCloud:
         return len(self.xyz)
 
     @classmethod
-    def from_xyz(cls, xyz: ArrayLike, frame: str = "z-up", rgb: Bytes | None = None) -> PointCloud:
+    def from_xyz(
+        cls,
+        xyz: ArrayLike,
+        frame: str = "z-up",
+        rgb: Bytes | None = None,
+        turn: Floats | None = None,
+    ) -> PointCloud:
         """A cloud from points (P, 3), metres, in a named frame (see `FRAMES`).
+
+        `turn` (3, 3) is a further rotation, from there to the house frame.
 
         The points are turned into the house frame and shifted to a local origin in double
         precision, so that large coordinates (UTM) keep their millimetres.
@@ -71,7 +79,7 @@ class PointCloud:
         points = _checked(xyz)
         if frame not in FRAMES:
             raise PrunusError(f"unknown frame {frame!r}; expected one of {sorted(FRAMES)}")
-        rotation = FRAMES[frame]
+        rotation = FRAMES[frame] if turn is None else turn @ FRAMES[frame]
         turned = points @ rotation.T
         middle = (turned.min(axis=0) + turned.max(axis=0)) / 2
         back = RigidMotion(rotation, -middle).inverse()

@@ -16,7 +16,7 @@ from prunus.io.export import COLOURS
 from prunus.measure import branches, leaders, lengths_by_label
 from prunus.model import Label
 from prunus.pipeline import Result
-from prunus.report.scene import scene_traces
+from prunus.report.scene import left_out_traces, scene_traces
 
 STYLE = """
 body{font:15px/1.45 system-ui,sans-serif;color:#222;margin:0 auto;max-width:1500px;padding:16px 24px}
@@ -61,10 +61,9 @@ def report_page(result: Result, title: str, notes: Iterable[str] = ()) -> str:
     """The report of one tree as HTML that holds all it needs; `notes` tell how it was read."""
     library = _plotly_library()
     traces = scene_traces(result.in_house, result.graph)
-    extent = np.ptp(result.graph.superpoints.cloud.xyz, axis=0)
-    zoom = min(WIDTH / max(extent[0], 1e-6), HEIGHT / max(extent[2], 1e-6))
-    ratio = dict(zip("xyz", (zoom * extent).tolist(), strict=True))
-    layout = LAYOUT | {"scene": LAYOUT["scene"] | {"aspectratio": ratio}}
+    if result.isolated is not None:
+        traces += left_out_traces(result.scan, result.isolated.kind)
+    layout = LAYOUT | {"scene": LAYOUT["scene"] | _frame_of(result)}
     score = [{"y": [round(value, 4) for value in result.history.tolist()], "mode": "lines"}]
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{escape(title)} - prunus</title>
@@ -86,6 +85,17 @@ Plotly.newPlot("scene", {json.dumps(traces)}, {json.dumps(layout)}, quiet);
 Plotly.newPlot("score", {json.dumps(score)}, {json.dumps(SCORE_LAYOUT)}, quiet);
 </script></body></html>
 """
+
+
+def _frame_of(result: Result) -> dict[str, Any]:
+    """Axes that hold the whole scan, zoomed so that the tree fills the scene."""
+    extent = np.ptp(result.graph.superpoints.cloud.xyz, axis=0)
+    zoom = min(WIDTH / max(extent[0], 1e-6), HEIGHT / max(extent[2], 1e-6))
+    low, high = result.scan.xyz.min(axis=0), result.scan.xyz.max(axis=0)
+    ratio = dict(zip("xyz", (zoom * (high - low)).tolist(), strict=True))
+    ranges = zip("xyz", np.column_stack([low, high]).tolist(), strict=True)
+    axes = {f"{one}axis": LAYOUT["scene"][f"{one}axis"] | {"range": ends} for one, ends in ranges}
+    return {"aspectratio": ratio} | axes
 
 
 def _plotly_library() -> str:

@@ -7,12 +7,22 @@ from typing import Any
 import numpy as np
 
 from prunus.io.export import COLOURS
-from prunus.model import Floats, Ints, Label, SeededGraph, Skeleton
+from prunus.model import Floats, Ints, Kind, Label, PointCloud, SeededGraph, Skeleton
 
 MOST_POINTS = 40_000
 """More points of the cloud would make the page slow, not clearer."""
 CLASSES = ((0.8, 1.01, "#7a5195"), (0.4, 0.8, "#bc7fbf"), (0.0, 0.4, "#d9d0dd"))
 """Confidence classes of candidate edges: from, up to, colour."""
+
+LEFT_OUT = {
+    Kind.NEIGHBOUR: "#b8860b",
+    Kind.BEHIND: "#4f86c6",
+    Kind.GROUND: "#8d6e63",
+    Kind.POST: "#444444",
+    Kind.WIRE: "#d62728",
+    Kind.STRAY: "#bbbbbb",
+}
+"""Colours of what is not the tree."""
 
 Trace = dict[str, Any]
 
@@ -26,6 +36,17 @@ def scene_traces(skeleton: Skeleton, graph: SeededGraph) -> list[Trace]:
         _points("tips", graph.xyz[graph.tips], "#cc79a7", 5, "diamond"),
         _points("superpoints", graph.xyz, "#888888", 3, "circle", shown=False),
         *(_candidates(graph, low, high, colour) for low, high, colour in CLASSES),
+    ]
+
+
+def left_out_traces(scan: PointCloud, kind: Ints) -> list[Trace]:
+    """Traces of the points of a scan that are not the tree, by their kind (P,); to switch on."""
+    step = -(-len(scan) // MOST_POINTS)
+    xyz, kind = scan.xyz[::step], kind[::step]
+    return [
+        _points(f"left out: {one.name.lower()}", xyz[kind == one], colour, 1.2, "circle", False)
+        for one, colour in LEFT_OUT.items()
+        if (kind == one).any()
     ]
 
 

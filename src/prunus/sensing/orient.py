@@ -15,6 +15,8 @@ PATCH = 0.10
 """Local pieces of wood are this large, metres."""
 PATCHES = 400
 """How many pieces are looked at."""
+LOOKED_AT = 20_000
+"""Of so many points."""
 NEEDED = 1.5
 """One axis must hold this many times as much wood as the other before the evidence counts."""
 
@@ -24,9 +26,7 @@ def find_frame(xyz: Floats) -> tuple[str, str]:
 
     Clouds without a decision are taken as `z-up`, and the line begins with `undecided`.
     """
-    step = max(1, len(xyz) // 20_000)
-    points = xyz[::step] - xyz[0]
-    _, along_y, along_z = wood_along_axes(points)
+    _, along_y, along_z = wood_along_axes(xyz - xyz[0])
     if along_y > NEEDED * along_z:
         return "optical", f"most wood runs along Y ({along_y:.0%}), little along Z ({along_z:.0%})"
     if along_z > NEEDED * along_y:
@@ -39,6 +39,17 @@ def find_frame(xyz: Floats) -> tuple[str, str]:
 
 def wood_along_axes(points: Floats) -> Floats:
     """Share (3,) of the local linear structure that runs along each axis."""
+    linear, directions = local_wood(points)
+    along = (linear[:, None] * directions**2).sum(axis=0)
+    return np.asarray(along / max(along.sum(), 1e-12))
+
+
+def local_wood(points: Floats) -> tuple[Floats, Floats]:
+    """How much `PATCHES` local pieces of wood are lines (C,), 0 to 1, and their directions (C, 3).
+
+    Of at most `LOOKED_AT` points.
+    """
+    points = points[:: max(1, len(points) // LOOKED_AT)]
     centers = points[:: max(1, len(points) // PATCHES)]
     start, members = within(points, centers, PATCH)
     sizes = np.diff(start)
@@ -53,5 +64,4 @@ def wood_along_axes(points: Floats) -> Floats:
             moments[:, i, j] = np.bincount(patch, products, len(centers)) / sizes
     spread, directions = np.linalg.eigh(moments - mean[:, :, None] * mean[:, None, :])
     linear = (spread[:, 2] - spread[:, 1]) / np.maximum(spread[:, 2], 1e-12)
-    along = (linear[:, None] * directions[:, :, 2] ** 2).sum(axis=0)
-    return np.asarray(along / max(along.sum(), 1e-12))
+    return np.asarray(linear), np.asarray(directions[:, :, 2])

@@ -37,19 +37,22 @@ class CategoryScorer(EdgeScorer, Protocol):
         """Conf(e), and the probability (E, 5) of each category should the edge be valid."""
 
 
-def score_edges(candidates: CandidateGraph, scorer: EdgeScorer, params: Confidence) -> ScoredGraph:
-    """The candidates with the confidence that the scorer gives, less the hopeless ones.
+def score_edges(candidates: CandidateGraph, scorer: EdgeScorer) -> ScoredGraph:
+    """The candidates with the confidence that the scorer gives."""
+    if isinstance(scorer, CategoryScorer):
+        return ScoredGraph(candidates, *scorer.judge(candidates), scorer.name)
+    return ScoredGraph.of_confidence(candidates, scorer(candidates), scorer.name)
+
+
+def hopeful(scored: ScoredGraph, scorer: EdgeScorer, params: Confidence) -> ScoredGraph:
+    """The graph less its hopeless edges.
 
     A branch with a gap has poor edges, worth crossing for what lies beyond; but an edge that is
     all but certainly none would tie another tree to this one for a small price.
     """
-    if isinstance(scorer, CategoryScorer):
-        confidence, category = scorer.judge(candidates)
-    else:
-        confidence, category = scorer(candidates), np.zeros((len(candidates.edges), 0))
-    kept = confidence >= (scorer.floor if params.floor == "auto" else params.floor)
-    left = CandidateGraph(candidates.superpoints, candidates.edges[kept])
-    return ScoredGraph(left, confidence[kept], category[kept], scorer.name)
+    kept = scored.confidence >= (scorer.floor if params.floor == "auto" else params.floor)
+    left = CandidateGraph(scored.candidates.superpoints, scored.edges[kept])
+    return ScoredGraph(left, scored.confidence[kept], scored.category[kept], scored.scorer)
 
 
 @dataclass(frozen=True)

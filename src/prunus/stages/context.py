@@ -90,11 +90,11 @@ def _edge_features(candidates: CandidateGraph) -> Inputs:
     vectors = np.diff(under.xyz[edges], axis=1)[:, 0]
     lengths = _lengths(vectors)
     unit = vectors / lengths[:, None]
-    moments = _moments(under)
-    reach = np.trace(moments, axis1=1, axis2=2)
-    line = (moments**2).sum(axis=(1, 2)) / reach**2
-    ball = np.linalg.det(moments) / reach**3
-    along = np.einsum("ei,ekij,ej->ek", unit, moments[edges], unit) / reach[edges]
+    spread = moments(under)
+    reach = np.trace(spread, axis1=1, axis2=2)
+    line = (spread**2).sum(axis=(1, 2)) / reach**2
+    ball = np.linalg.det(spread) / reach**3
+    along = np.einsum("ei,ekij,ej->ek", unit, spread[edges], unit) / reach[edges]
     columns = [lengths / under.radius, np.abs(unit[:, 2]), np.abs(unit[:, 0])]
     columns += [np.abs(_places(under)[edges].mean(axis=1))]
     for values in (np.log1p(np.diff(under.start))[edges], np.sqrt(reach)[edges] / under.radius):
@@ -132,17 +132,17 @@ def _straightest(met: Ints, meeting: Inputs) -> tuple[Ints, Inputs]:
     return met, known.reshape(len(met), -1, MEETING_FEATURES)
 
 
-def _moments(under: Superpoints) -> Floats:
+def moments(under: Superpoints) -> Floats:
     """Second moments (N, 3, 3) of the points of each superpoint about it."""
     counts = np.diff(under.start)
     owner = np.repeat(np.arange(len(under)), counts)
     local = under.cloud.xyz[under.members] - under.xyz[owner]
-    moments = np.zeros((len(under), 3, 3))
+    found = np.zeros((len(under), 3, 3))
     for i in range(3):
         for j in range(i, 3):
             sums = np.bincount(owner, local[:, i] * local[:, j], len(under))
-            moments[:, i, j] = moments[:, j, i] = sums / np.maximum(counts, 1)
-    return moments + 1e-6 * np.eye(3)
+            found[:, i, j] = found[:, j, i] = sums / np.maximum(counts, 1)
+    return found + 1e-6 * np.eye(3)
 
 
 def _places(under: Superpoints) -> Floats:

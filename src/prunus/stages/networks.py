@@ -17,6 +17,13 @@ from prunus.stages.images import edge_images
 WEIGHTS = Path(__file__).parents[1] / "weights"
 """The networks that the package ships: `ours.onnx`, `paper.onnx`."""
 
+SHOWN = (
+    frozenset({"image", "description"}),
+    frozenset({"profile", "bend", "edge", "met", "meeting"}),
+)
+TOLD = frozenset({"confidence", "category"})
+"""What edge networks are shown, and what they tell."""
+
 
 @dataclass(frozen=True)
 class NetworkScorer:
@@ -43,7 +50,7 @@ class NetworkScorer:
         """
         if len(candidates.edges) == 0:
             return np.zeros(0), np.zeros((0, 5))
-        session = _session(self.path)
+        session = open_network(self.path, SHOWN, TOLD)
         wanted = [one.name for one in session.get_inputs()]
         confidence, category = session.run(["confidence", "category"], _shown(candidates, wanted))
         return np.asarray(confidence, np.float64), np.asarray(category, np.float64)
@@ -58,7 +65,11 @@ def _shown(candidates: CandidateGraph, wanted: list[str]) -> dict[str, Any]:
 
 
 @cache
-def _session(path: Path) -> Any:
+def open_network(path: Path, inputs: tuple[frozenset[str], ...], outputs: frozenset[str]) -> Any:
+    """An onnxruntime session of a network with one of these sets of inputs, and these outputs.
+
+    Raises PrunusError where the file holds none.
+    """
     import onnxruntime
     from onnxruntime.capi import onnxruntime_pybind11_state as errors
 
@@ -76,8 +87,7 @@ def _session(path: Path) -> Any:
         raise PrunusError(f"{path}: not an ONNX file ({type(error).__name__})") from error
     names = {one.name for one in session.get_inputs()}
     found = {one.name for one in session.get_outputs()}
-    known = ({"image", "description"}, {"profile", "bend", "edge", "met", "meeting"})
-    if names not in known or found != {"confidence", "category"}:
+    if names not in inputs or found != outputs:
         raise PrunusError(
             f"{path}: a network from {sorted(names)} to {sorted(found)}; "
             "expected one that `prunus train` made"

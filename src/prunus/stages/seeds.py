@@ -81,6 +81,12 @@ def nearest_superpoint(scored: ScoredGraph, point: Floats) -> int:
     return int(np.where(joined, distance, distance + reach).argmin())
 
 
+def near_to(scored: ScoredGraph, point: Floats) -> bool:
+    """Whether a base picked by hand is near any superpoint."""
+    distance = np.linalg.norm(scored.xyz - point, axis=1)
+    return bool(distance.min() <= BASE_REACH * scored.candidates.superpoints.radius)
+
+
 def lowest_of_largest(scored: ScoredGraph, alpha_conf: float) -> int:
     """The lowest superpoint of the largest piece joined by confident edges."""
     piece = components(len(scored.xyz), scored.edges[scored.confidence >= alpha_conf])

@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from prunus.errors import PrunusError
-from prunus.kernels.axes import contract, count_nearest, cover_along
-from prunus.kernels.neighbours import cover, within
+from prunus.kernels.axes import contract, cover_along
+from prunus.kernels.neighbours import cover, nearest, within
 from prunus.model import Floats, Ints, PointCloud, Superpoints
 from prunus.params import Cover
+from prunus.stages.wires import on_wires
 
 THIN = 0.015
 """The cloud is thinned to balls of this radius before it is drawn together, metres."""
@@ -54,7 +55,8 @@ def find_superpoints(cloud: PointCloud, params: Cover, rng: np.random.Generator)
             f"{size.max(initial=0)} of {len(cloud)}); expected a denser cloud, in metres"
         )
     start, members = within(cloud.xyz, kept, params.r_super)
-    steps = count_nearest(axes.steps, kept, params.r_super)
+    owner = nearest(axes.steps, kept, params.r_super)
+    steps = np.bincount(owner[owner >= 0], minlength=len(kept))
     wood = np.asarray(PARKED * STEP * steps, np.float64)
     return Superpoints(cloud, kept, start, members, params.r_super, wood)
 
@@ -78,6 +80,7 @@ def _drawn_together(cloud: PointCloud, rng: np.random.Generator) -> _Axes:
     thinned, size = cover(cloud.xyz, rng.permutation(len(cloud)), THIN)
     xyz, along, line, aside, around = contract(thinned, np.sqrt(size), GATHER, ROUNDS)
     kept = around >= LONELY
+    kept[kept] = ~on_wires(xyz[kept], along[kept], rng)
     xyz = xyz[kept]
     steps, _ = cover(xyz, rng.permutation(len(xyz)), STEP)
     return _Axes(xyz, along[kept], (line - ENDS * aside)[kept], size[kept], steps)
