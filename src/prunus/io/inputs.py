@@ -37,15 +37,14 @@ class Source:
 def source_of(path: Path) -> Source:
     """What a path names: `bag.mcap#/points` is a topic of a bag, unless a file is called so.
 
-    The folder of one tree names its cloud (see `tree_in`).
+    No topic holds that mark, so the last one counts. The folder of one tree names its cloud (see `tree_in`).
     """
     if path.exists():
         return Source(tree_in(path) or path)
-    text = path.as_posix()
-    cuts = [at for at, letter in enumerate(text[:-1]) if letter == "#" and at > 0]
-    found = [Source(Path(text[:at]), text[at + 1 :]) for at in cuts if is_bag(Path(text[:at]))]
-    there = (source for source in found if source.path.exists())
-    return next(there, found[0] if found else Source(path))
+    bag, _, topic = path.as_posix().rpartition("#")
+    if bag and topic and is_bag(Path(bag)):
+        return Source(Path(bag), topic)
+    return Source(path)
 
 
 def is_bag(path: Path) -> bool:
@@ -111,7 +110,7 @@ def names_of(paths: list[Path]) -> list[str]:
 
 def _own(path: Path) -> str:
     thing = _thing(path)
-    return thing.name if thing.is_dir() else thing.stem
+    return _called(thing) if thing.is_dir() else thing.stem
 
 
 def _above(path: Path) -> str:
@@ -119,10 +118,15 @@ def _above(path: Path) -> str:
     topic = source_of(path).topic
     if topic is not None:
         return f"{_own(path)}_{topic.strip('/').replace('/', '_')}"
-    return _thing(path).absolute().parent.name
+    return _called(_thing(path).parent)
 
 
 def _thing(path: Path) -> Path:
     """The file or bag, or the folder that it stands for."""
     file = source_of(path).path
     return file.parent if file.name in ONE_TREE and file.parent.name else file
+
+
+def _called(folder: Path) -> str:
+    """The name of a folder, also of `.` and `..`."""
+    return folder.name if folder.name not in ("", "..") else folder.resolve().name

@@ -17,6 +17,10 @@ REACH = 10**9
 """Nanoseconds before its first and after its last sample for which a moving transform holds."""
 
 
+Sample = tuple[bool, str, int, list[float]]
+"""Of a transform: whether static, the parent, the time (ns), x y z (m) and x y z w of its turn."""
+
+
 @dataclass(frozen=True, eq=False)
 class Joint:
     """A frame in its parent: samples at time (S,) ns, place (S, 3) m, turn (S, 4) x y z w."""
@@ -55,19 +59,26 @@ class Transforms:
     joints: dict[str, Joint]
 
     @classmethod
-    def from_messages(cls, messages: Iterable[tuple[bool, Any]], named: str) -> Transforms:
-        """The tree told by `tf2_msgs/TFMessage`s, each with whether it came as static.
+    def from_messages(
+        cls, messages: Iterable[tuple[bool, Any]], frames: Iterable[str], named: str
+    ) -> Transforms:
+        """The joints above these frames, from `tf2_msgs/TFMessage`s, each with whether static.
 
         PrunusError, naming the frame, where one has two parents or a turn that is none.
         """
-        samples: dict[str, list[tuple[bool, str, int, list[float]]]] = {}
+        samples: dict[str, list[Sample]] = {}
         for static, message in messages:
             for told in message.transforms:
-                place, turn = told.transform.translation, told.transform.rotation
-                numbers = [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w]
-                row = (static, frame_of(told), time_of(told), numbers)
-                samples.setdefault(told.child_frame_id.strip("/"), []).append(row)
-        return cls({child: _joint(child, rows, named) for child, rows in samples.items()})
+                child = told.child_frame_id.strip("/")
+                samples.setdefault(child, []).append(_sample(static, told))
+        joints: dict[str, Joint] = {}
+        waiting = list(frames)
+        while waiting:
+            child = waiting.pop()
+            if child in samples and child not in joints:
+                joints[child] = _joint(child, samples[child], named)
+                waiting.append(joints[child].parent)
+        return cls(joints)
 
     def above(self, frame: str) -> list[str]:
         """The frame and those above it, up to the root; a loop ends where it closes."""
@@ -91,7 +102,13 @@ class Transforms:
         return whole
 
 
-def _joint(child: str, rows: list[tuple[bool, str, int, list[float]]], named: str) -> Joint:
+def _sample(static: bool, told: Any) -> Sample:
+    place, turn = told.transform.translation, told.transform.rotation
+    numbers = [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w]
+    return static, frame_of(told), time_of(told), numbers
+
+
+def _joint(child: str, rows: list[Sample], named: str) -> Joint:
     rows = [row for row in rows if not row[0]] or rows[-1:]
     parents = sorted({parent for _, parent, _, _ in rows})
     if len(parents) > 1:
