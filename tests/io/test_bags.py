@@ -1,7 +1,9 @@
 """Recordings of robots: every kind read back to the digit, every fault refused by name."""
 
 import hashlib
+import sqlite3
 import sys
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -52,6 +54,16 @@ def test_a_file_of_a_ros_2_bag_is_read_alone(kind: str, tmp_path: Path) -> None:
     cloud = read_cloud(file)
     assert (cloud.xyz == XYZ).all()
     assert cloud.sha256 == hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def test_a_bag_of_old_ros_2_holds_no_definitions(tmp_path: Path) -> None:
+    """Up to Humble, `ros2 bag record` wrote SQLite without the definitions of the messages."""
+    recording = Recording("sqlite3")
+    recording.cloud("/points", table_of(XYZ))
+    folder = recording.write(tmp_path)
+    with closing(sqlite3.connect(folder / "rec.db3")) as base, base:
+        base.execute("DELETE FROM message_definitions")
+    assert (read_cloud(folder).xyz == XYZ).all()
 
 
 def test_the_digest_of_a_folder_is_over_its_files_by_name(mcap: Recording, tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from prunus.errors import PrunusError
 from prunus.io.inputs import Source, clouds_in, is_bag, is_one, names_of, source_of, tree_in
 
 
@@ -99,3 +100,9 @@ def test_names_are_short_where_they_can_be_and_never_shared(
     (tmp_path / "here" / "in").mkdir(parents=True)
     monkeypatch.chdir(tmp_path / "here" / "in")
     assert names_of([Path(path) for path in paths]) == names
+
+
+def test_what_cannot_be_looked_at_is_a_plain_error() -> None:
+    with pytest.raises(PrunusError, match=r"cannot be read \(File name too long\)"):
+        source_of(Path("n" * 300 + ".ply"))
+    assert not is_bag(Path("n" * 300)) and tree_in(Path("n" * 300)) is None

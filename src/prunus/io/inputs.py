@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from prunus.errors import PrunusError
 from prunus.io.readers import READERS
 
 BAGS = (".bag", ".mcap", ".db3")
@@ -37,9 +39,14 @@ class Source:
 def source_of(path: Path) -> Source:
     """What a path names: `bag.mcap#/points` is a topic of a bag, unless a file is called so.
 
-    No topic holds that mark, so the last one counts. The folder of one tree names its cloud (see `tree_in`).
+    No topic holds that mark, so the last one counts. The folder of one tree names its cloud
+    (see `tree_in`). PrunusError where the path cannot be looked at.
     """
-    if path.exists():
+    try:
+        there = path.exists()
+    except OSError as error:
+        raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
+    if there:
         return Source(tree_in(path) or path)
     bag, _, topic = path.as_posix().rpartition("#")
     if bag and topic and is_bag(Path(bag)):
@@ -49,21 +56,21 @@ def source_of(path: Path) -> Source:
 
 def is_bag(path: Path) -> bool:
     """Whether a path is that of a recording: by its ending, or a folder with ROS 2's metadata."""
-    if not path.is_dir():
-        return path.suffix.lower() in BAGS
-    try:
+    with suppress(OSError):
+        if not path.is_dir():
+            return path.suffix.lower() in BAGS
         with (path / "metadata.yaml").open("rb") as file:
             return b"rosbag2_bagfile_information" in file.read(4096)
-    except OSError:
-        return False
+    return False
 
 
 def tree_in(folder: Path) -> Path | None:
     """The cloud that stands for the folder of one tree: the data set's, or a simulated scan."""
-    for name, beside in ONE_TREE.items():
-        known = not beside or any((folder / other).is_file() for other in beside)
-        if known and (folder / name).is_file():
-            return folder / name
+    with suppress(OSError):
+        for name, beside in ONE_TREE.items():
+            known = not beside or any((folder / other).is_file() for other in beside)
+            if known and (folder / name).is_file():
+                return folder / name
     return None
 
 
