@@ -177,10 +177,11 @@ def test_a_long_recording_is_thinned_and_says_so(
 ) -> None:
     monkeypatch.setattr(bags, "MOST", 25)
     for time in range(1, 7):
-        mcap.cloud("/points", table_of(XYZ[:10]), time=time)
+        mcap.cloud("/points", table_of(XYZ[10:20] if time == 5 else XYZ[:10]), time=time)
     cloud = read_cloud(mcap.write(tmp_path))
     assert len(cloud.xyz) == 20
-    assert cloud.notes[0].startswith("topic /points: 2 messages joined, one in 3 of 6")
+    assert cloud.notes[0].startswith("topic /points: 2 messages joined, one in 4 of 6")
+    assert (cloud.xyz == np.concatenate([XYZ[:10], XYZ[10:20]])).all()
 
 
 DEPTH = np.array([[1.0, 2.0, 0.0], [0.5, 4.0, 1.5]])

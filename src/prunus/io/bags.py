@@ -26,7 +26,7 @@ from prunus.model import Floats
 from prunus.model.arrays import Bytes
 
 MOST = 10_000_000
-"""Points that are joined at most; of a longer recording every second, third ... message is."""
+"""Points that are joined at most; of a longer recording every second, fourth ... message is."""
 
 
 def read_bag(source: Source) -> tuple[Floats, Bytes | None, list[str]]:
@@ -80,11 +80,10 @@ def _read(bag: Any, wanted: str | None, named: str) -> tuple[Floats, Bytes | Non
     xyz = np.concatenate([xyz for xyz, _ in parts])
     colours = [rgb for _, rgb in parts if rgb is not None]
     rgb = np.concatenate(colours) if len(colours) == len(parts) else None
-    notes = [f"topic {topic}: {taken}", *where]
-    seen = np.isfinite(xyz).all(axis=1)
-    if not seen.all():
-        notes.append(f"{(~seen).sum()} of {len(xyz)} points saw nothing (NaN) and were left out")
-    return xyz[seen], None if rgb is None else rgb[seen], notes
+    lost = sum(view.lost for view in views)
+    whole = lost + sum(len(view.xyz) for view in views)
+    dark = [f"{lost} of {whole} points saw nothing (NaN) and were left out"] if lost else []
+    return xyz, rgb, [f"topic {topic}: {taken}", *where, *dark]
 
 
 def _transforms(bag: Any, views: list[View], named: str) -> Transforms:
@@ -98,16 +97,28 @@ def _transforms(bag: Any, views: list[View], named: str) -> Transforms:
 
 
 def _views(bag: Any, topic: str, named: str) -> tuple[list[View], str]:
-    """What the messages of a topic saw, at most about `MOST` points, and how many were taken."""
+    """What the messages of a topic saw, and how many were taken.
+
+    Whenever they hold more than `MOST` points, every second goes, and of the rest to come too.
+    """
     points = _points_of(bag, topic, named)
-    count, every, views = bag.topics[topic].msgcount, 1, list[View]()
+    every, views = 1, list[View]()
     for number, ((_, time), message) in enumerate(messages(bag, topic)):
-        if number == 0:
-            every = max(1, -(-count * message.width * message.height // MOST))
         if number % every == 0:
-            views.append(View(*points(message), frame_of(message), time_of(message) or time))
-    sparse = f", one in {every} of {count}: all would hold more than {MOST} points"
-    return views, f"{counted(len(views))} joined" + sparse * (every > 1)
+            views.append(_view(*points(message), message, time))
+        if sum(len(view.xyz) for view in views) > MOST:
+            views, every = views[::2], every * 2
+    count = bag.topics[topic].msgcount
+    sparse = f", one in {every} of {count}: more would hold over {MOST} points"
+    return views, f"{counted(len(views))} joined" + sparse * (len(views) < count)
+
+
+def _view(xyz: Floats, rgb: Bytes | None, message: Any, time: int) -> View:
+    """The points that a message saw; `time` (ns) in the bag counts where it has no stamp."""
+    seen = np.isfinite(xyz).all(axis=1)
+    rgb = None if rgb is None else rgb[seen]
+    when = time_of(message) or time
+    return View(xyz[seen], rgb, frame_of(message), when, int((~seen).sum()))
 
 
 def _points_of(bag: Any, topic: str, named: str) -> Callable[[Any], Columns]:

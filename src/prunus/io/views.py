@@ -13,12 +13,16 @@ from prunus.model.arrays import Bytes
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """What a message saw at a time (ns): xyz (P, 3) m in its sensor's frame, rgb (P, 3) or None."""
+    """What a message saw at a time (ns): xyz (P, 3) m in its sensor's frame, rgb (P, 3) or None.
+
+    `lost` is how many of its points saw nothing.
+    """
 
     xyz: Floats
     rgb: Bytes | None
     frame: str
     time: int
+    lost: int
 
 
 def placed(
