@@ -17,6 +17,8 @@ from prunus.params import Parameters
 from prunus.rules import offenders
 from prunus.simulate.orchard import simulate_tree
 from tests.conftest import simulated
+from tests.recordings import Recording
+from tests.recordings import table_of as points_table
 
 OUTPUTS = {"skeleton.json", "skeleton.swc", "skeleton.ply", "params.toml", "report.html"}
 FAST = ["--no-report", "--frame", "z-up"]
@@ -120,12 +122,63 @@ def test_two_jobs_do_the_same(scan: Path, quick: Path, tmp_path: Path) -> None:
 def test_inputs_of_one_name_are_refused_not_overwritten(
     scan: Path, quick: Path, tmp_path: Path
 ) -> None:
-    (tmp_path / "sub").mkdir()
-    twin = tmp_path / "sub" / "tree.ply"
-    twin.write_bytes(scan.read_bytes())
+    twin = tmp_path / "tree.pcd"
+    twin.write_bytes(b"no cloud")
     done = prunus("skeletonize", scan, twin, "-o", tmp_path / "out", "--params", quick, *FAST)
     assert done.exit_code == 1
     assert "both would be written to" in done.stderr
+
+
+def test_inputs_of_one_name_in_two_folders_go_by_their_folders(
+    scan: Path, quick: Path, tmp_path: Path
+) -> None:
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "tree.ply").write_bytes(scan.read_bytes())
+    words = [tmp_path / "a" / "tree.ply", tmp_path / "b" / "tree.ply", "-o", tmp_path / "out"]
+    assert prunus("skeletonize", *words, "--params", quick, *FAST).exit_code == 0
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"a", "b"}
+
+
+def test_the_folders_of_the_data_set_are_inputs(scan: Path, quick: Path, tmp_path: Path) -> None:
+    for tree in ("bag_0", "bag_1"):
+        (tmp_path / "set" / tree).mkdir(parents=True)
+        (tmp_path / "set" / tree / "cloud_final.ply").write_bytes(scan.read_bytes())
+        (tmp_path / "set" / tree / "top_cloud.ply").write_bytes(b"no cloud")
+    out = tmp_path / "out"
+    rest = ["--params", quick, *FAST]
+    assert prunus("skeletonize", tmp_path / "set", "-o", out, *rest).exit_code == 0
+    assert {path.name for path in out.iterdir()} == {"bag_0", "bag_1"}
+    one = tmp_path / "one"
+    assert prunus("skeletonize", tmp_path / "set" / "bag_1", "-o", one, *rest).exit_code == 0
+    for name in ("skeleton.swc", "skeleton.ply"):
+        assert (one / name).read_bytes() == (out / "bag_1" / name).read_bytes()
+    assert prunus("convert", tmp_path / "set" / "bag_1", tmp_path / "t.xyz").exit_code == 0
+
+
+@pytest.mark.parametrize("kind", ["ros1", "sqlite3", "mcap"])
+def test_a_bag_is_an_input_like_any_other(
+    kind: str, scan: Path, quick: Path, tmp_path: Path
+) -> None:
+    pytest.importorskip("rosbags")
+    recording = Recording(kind)
+    recording.cloud("/left/points", points_table(read_cloud(scan).xyz))
+    recording.cloud("/right/points", points_table(np.zeros((5, 3))))
+    bag, out = recording.write(tmp_path), tmp_path / "out"
+    done = prunus("skeletonize", bag, "-o", out, "--params", quick, *FAST)
+    assert done.exit_code == 1 and not out.exists()
+    assert "2 topics hold point clouds" in done.stderr and "Traceback" not in done.output
+    topic = f"{bag}#/left/points"
+    done = prunus("skeletonize", topic, "-o", out, "--json", "--params", quick, *FAST)
+    assert done.exit_code == 0, done.output
+    record = json.loads(done.stdout)
+    assert record["file"] == topic and record["points"] == 20_000
+    assert "topic /left/points: 1 message joined" in record["warnings"]
+    written = read_record(out / "skeleton.json")[1].input
+    assert written is not None and written.file == f"{bag.name}#/left/points"
+    assert prunus("convert", topic, tmp_path / "t.xyz").exit_code == 0
+    done = prunus("convert", bag, tmp_path / "t.xyz")
+    assert done.exit_code == 2 and "2 topics hold point clouds" in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -249,6 +302,8 @@ def test_an_orchard_is_written_tree_by_tree(tmp_path: Path) -> None:
     assert files == {"scan.ply", "truth.json", "trees.npz"}
     scan, out = tmp_path / "orchard" / names[0] / "scan.ply", tmp_path / "out"
     assert prunus("skeletonize", scan, "-o", out, *FAST).exit_code == 0
+    assert prunus("skeletonize", tmp_path / "orchard", "-o", out, *FAST).exit_code == 0
+    assert {path.name for path in out.iterdir() if path.is_dir()} == set(names)
 
 
 def test_training_on_a_folder_without_scans_says_what_it_expects(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from prunus import __version__
 from prunus.errors import PrunusError
 from prunus.intake import Scan, open_scan
 from prunus.io.export import write_ply, write_swc
-from prunus.io.readers import READERS
+from prunus.io.inputs import clouds_in, is_one, names_of
 from prunus.io.safely import write_bytes
 from prunus.io.skeletons import write_skeleton
 from prunus.kernels.compiled import is_compiled, mark_compiled
@@ -56,7 +56,8 @@ class Task:
 def plan(inputs: list[Path], output: Path | None) -> tuple[list[Task], list[Record]]:
     """The tasks of a batch, folders searched for clouds; inputs that cannot be one as failures.
 
-    One input is written to `output`, several to a folder of their own name below it.
+    One input is written to `output`, several to a folder of their own name below it
+    (see `names_of`).
     """
     files: list[Path] = []
     failed = []
@@ -70,11 +71,11 @@ def plan(inputs: list[Path], output: Path | None) -> tuple[list[Task], list[Reco
             failed.append(failure(path, f"{path}: no point cloud in this folder"))
         files += inside
     root = output or Path("prunus-out")
-    if len(files) == 1 and output is not None and not inputs[0].is_dir():
+    if len(files) == 1 and output is not None and is_one(inputs[0]):
         return [Task(files[0], output)], failed
     tasks: dict[Path, Task] = {}
-    for path in files:
-        folder = root / path.stem
+    for path, name in zip(files, names_of(files), strict=True):
+        folder = root / name
         if folder in tasks:
             other = tasks[folder].path
             text = f"{path}: has the same name as {other}; both would be written to {folder}"
@@ -82,11 +83,6 @@ def plan(inputs: list[Path], output: Path | None) -> tuple[list[Task], list[Reco
         else:
             tasks[folder] = Task(path, folder)
     return list(tasks.values()), failed
-
-
-def clouds_in(folder: Path) -> list[Path]:
-    """The point clouds right inside a folder, by name."""
-    return sorted(path for path in folder.iterdir() if path.suffix.lower() in READERS)
 
 
 def run(tasks: list[Task], options: Options, jobs: int) -> Iterator[Record]:
@@ -150,7 +146,7 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
     if folder.exists() and not folder.is_dir():
         raise PrunusError(f"{folder}: is a file; expected a folder to write to")
     if report:
-        page = report_page(result, scan.file.path.name, [*scan.notes, *result.notes])
+        page = report_page(result, scan.file.name, [*scan.notes, *result.notes])
         write_bytes(folder / "report.html", page.encode())
     write_swc(folder / "skeleton.swc", result.skeleton)
     write_ply(folder / "skeleton.ply", result.skeleton)
@@ -160,7 +156,7 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
         result.skeleton,
         score=result.score,
         input={
-            "file": scan.file.path.name,
+            "file": scan.file.name,
             "sha256": scan.file.sha256,
             "points": len(scan.cloud),
         },

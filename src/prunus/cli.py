@@ -94,7 +94,7 @@ def _prunus(
 
 @app.command()
 def skeletonize(
-    clouds: Annotated[list[Path], typer.Argument(help="Point clouds, or folders of them.")],
+    clouds: Annotated[list[Path], typer.Argument(help="Point clouds, bags, or folders of them.")],
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", help="Folder to write to. [default: prunus-out/NAME]"),
@@ -130,11 +130,13 @@ def skeletonize(
     ] = False,
     jobs: Annotated[int, typer.Option(min=1, help="Trees worked on at the same time.")] = 1,
 ) -> None:
-    """Turn clouds (PLY, PCD, XYZ, TXT, CSV, LAS, LAZ, NPY, NPZ) into labelled skeletons.
+    """Turn clouds (PLY, PCD, XYZ, TXT, CSV, LAS, LAZ, NPY, NPZ, ROS bags) into labelled skeletons.
 
     Writes skeleton.json, skeleton.swc, skeleton.ply, report.html and params.toml for each tree.
 
     In a camera's frame: `prunus skeletonize tree.ply --frame optical --base 1.4 0.9 1.4`
+
+    A topic of a ROS 1 or 2 bag: `prunus skeletonize row.mcap#/camera/points`
 
     Many, for a script: `prunus skeletonize scans/*.ply -o out --jobs 4 --json > trees.jsonl`
     """

@@ -1,4 +1,4 @@
-"""Point clouds from files: PLY, PCD, XYZ / TXT / CSV, LAS / LAZ, NPY, NPZ."""
+"""Point clouds from files: PLY, PCD, XYZ / TXT / CSV, LAS / LAZ, NPY, NPZ, and ROS bags."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ from typing import Any
 import numpy as np
 
 from prunus.errors import PrunusError
+from prunus.io.bags import read_bag
+from prunus.io.inputs import BAGS, Source, is_bag, source_of
 from prunus.io.ply import ply_bytes, table_of
 from prunus.io.readers import READERS
-from prunus.io.safely import read_bytes, write_bytes
+from prunus.io.safely import digest_of, read_bytes, write_bytes
 from prunus.model import Floats
 from prunus.model.arrays import Bytes
 
@@ -29,7 +31,10 @@ PLAUSIBLE_CM = 600.0
 
 @dataclass(frozen=True, eq=False)
 class FileCloud:
-    """What a file holds: xyz (P, 3) in metres in its own frame, rgb (P, 3) or None, its sha256."""
+    """What a file holds: xyz (P, 3) in metres in its own frame, rgb (P, 3) or None, its sha256.
+
+    `name` is the last part of the path, of a bag with the topic that was asked for.
+    """
 
     path: Path
     xyz: Floats
@@ -37,19 +42,38 @@ class FileCloud:
     sha256: str
     notes: list[str]
 
+    @property
+    def name(self) -> str:
+        """What the file is called where it is shown and written down."""
+        return source_of(self.path).name
+
 
 def read_cloud(path: str | Path, unit: str | None = None) -> FileCloud:
     """Read a cloud; `unit` (m, cm, mm) is that of the file, None = metres and checked.
 
+    A bag, `bag.mcap#/topic` and the folder of one tree are read too (see docs/inputs.md).
     Raises PrunusError naming the file, what was found and what was expected.
     """
-    path = Path(path)
     if unit is not None and unit not in UNITS:
         raise PrunusError(f"unknown unit {unit!r}; expected one of {sorted(UNITS)}")
+    source = source_of(Path(path))
+    if is_bag(source.path):
+        return _read_bag(source, UNITS[unit or "m"])
+    return _read_file(source.path, unit)
+
+
+def _read_bag(source: Source, metres: float) -> FileCloud:
+    xyz, rgb, notes = read_bag(source)
+    xyz, rgb, _ = _finite(xyz, rgb, source.full)
+    return FileCloud(source.full, xyz * metres, rgb, digest_of(source.path), notes)
+
+
+def _read_file(path: Path, unit: str | None) -> FileCloud:
     reader = READERS.get(path.suffix.lower())
     if reader is None:
+        expected = " ".join([*READERS, *BAGS])
         raise PrunusError(
-            f"{path}: unknown kind of file {path.suffix!r}; expected one of {' '.join(READERS)}"
+            f"{path}: unknown kind of file {path.suffix!r}; expected one of {expected}"
         )
     content = read_bytes(path)
     xyz, rgb = reader(content, path)

@@ -18,7 +18,8 @@ Columns = tuple[Floats, Bytes | None]
 """xyz (P, 3) as in the file, rgb (P, 3) where the file has colours."""
 
 
-def _columns(table: Any, names: tuple[str, ...], path: Path) -> Columns:
+def columns_of(table: Any, names: tuple[str, ...], path: Path | str) -> Columns:
+    """x, y, z and colours among the named columns of a table; PrunusError where one is missing."""
     lower = {name.lower(): name for name in names}
     missing = [axis for axis in "xyz" if axis not in lower]
     if missing:
@@ -43,9 +44,15 @@ def _bytes(rgb: Any) -> Bytes:
     return np.asarray(np.clip(np.nan_to_num(rgb), 0, 255), np.uint8)
 
 
+def unpacked(packed: Any) -> Bytes:
+    """Colours (P, 3) from numbers (P,) of four bytes each, that hold red, green and blue."""
+    bits = np.ascontiguousarray(packed, packed.dtype).view(packed.dtype.byteorder + "u4")
+    return np.column_stack([bits >> 16, bits >> 8, bits]).astype(np.uint8)
+
+
 def _read_ply(content: bytes, path: Path) -> Columns:
     table = read_ply(content, path)["vertex"]
-    return _columns(table, table.dtype.names or (), path)
+    return columns_of(table, table.dtype.names or (), path)
 
 
 def _read_pcd(content: bytes, path: Path) -> Columns:
@@ -58,10 +65,9 @@ def _read_pcd(content: bytes, path: Path) -> Columns:
         table = {name: cloud.pc_data[name].reshape(-1) for name in fields}
     except Exception as error:
         raise PrunusError(f"{path}: not a readable PCD file: {error}") from error
-    xyz, rgb = _columns(table, tuple(fields), path)
+    xyz, rgb = columns_of(table, tuple(fields), path)
     if rgb is None and "rgb" in table:
-        packed = np.ascontiguousarray(table["rgb"], table["rgb"].dtype).view(np.uint32)
-        rgb = np.column_stack([packed >> 16, packed >> 8, packed]).astype(np.uint8)
+        rgb = unpacked(table["rgb"])
     return xyz, rgb
 
 
@@ -99,7 +105,7 @@ def _read_text(content: bytes, path: Path) -> Columns:
         raise PrunusError(f"{path}: rows hold {values.shape[1]} numbers; expected x, y, z")
     if headed:
         table = {name: values[:, column] for column, name in enumerate(names[: values.shape[1]])}
-        return _columns(table, tuple(table), path)
+        return columns_of(table, tuple(table), path)
     return values[:, :3].copy(), _bytes(values[:, 3:6]) if values.shape[1] == 6 else None
 
 
@@ -139,7 +145,7 @@ def _load(content: bytes, path: Path) -> Any:
 
 def _array(values: Any, path: Path) -> Floats:
     if values.dtype.names:
-        return _columns(values, values.dtype.names, path)[0]
+        return columns_of(values, values.dtype.names, path)[0]
     if values.ndim != 2 or values.shape[1] < 3 or values.dtype.kind not in "fiu":
         raise PrunusError(
             f"{path}: holds {values.dtype} of shape {values.shape}; expected numbers (P, 3)"

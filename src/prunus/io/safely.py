@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
 import tempfile
 from pathlib import Path
@@ -19,6 +20,33 @@ def read_bytes(path: Path) -> bytes:
     if not content:
         raise PrunusError(f"{path}: the file is empty")
     return content
+
+
+def check_readable(path: Path) -> None:
+    """Raise the PrunusError of `read_bytes` without reading a large file; folders pass."""
+    if path.is_dir():
+        return
+    try:
+        with path.open("rb") as file:
+            first = file.read(1)
+    except OSError as error:
+        raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
+    if not first:
+        raise PrunusError(f"{path}: the file is empty")
+
+
+def digest_of(path: Path) -> str:
+    """The sha256 of a file, or of the files right inside a folder, one after another by name."""
+    files = sorted(p for p in path.iterdir() if p.is_file()) if path.is_dir() else [path]
+    whole = hashlib.sha256()
+    try:
+        for one in files:
+            with one.open("rb") as file:
+                while block := file.read(2**20):
+                    whole.update(block)
+    except OSError as error:
+        raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
+    return whole.hexdigest()
 
 
 def write_bytes(path: Path, content: bytes) -> None:
