@@ -1,0 +1,121 @@
+"""The axes of branches as one view sees them: thin, comparable between views, with their doubt.
+
+A view sees the near side of a branch, and stereo smears it: a ribbon, wider than the branch, whose
+middle line is right across the view and too near by about the branch's radius. Views from other
+places err to other sides, so the points are first drawn together to that line and then pushed away
+from the camera by the radius, which the width of the ribbon tells.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from prunus.kernels.axes import contract
+from prunus.kernels.neighbours import cover, within
+from prunus.model import Floats, Ints
+from prunus.sensing.views import Seen
+
+THIN = 0.004
+"""Points are first thinned to balls of this radius, metres."""
+AROUND = 0.03
+"""Points so near, metres, decide which line a point goes to."""
+ROUNDS = 3
+"""How often points are drawn together."""
+LINE = 0.8
+"""Least share by which the surroundings of a sample are a line (see `kernels.axes.main_axis`)."""
+ASIDE = 0.3
+"""The middle of its surroundings is so far along the line from a sample, at most, in `AROUND`."""
+SPACING = 0.015
+"""One sample is kept in each cube of this side, metres."""
+BESIDE = 0.02
+"""The width is that of the points drawn to within so many metres of a sample."""
+FEWEST = 5
+"""Samples with fewer such points are dropped."""
+SPILL = 1.0
+"""Pixels by which stereo matching lets wood spill over its edges, in the mean."""
+RADII = (0.001, 0.05)
+"""Branches are no thinner and no thicker, metres."""
+BULGE = 0.9
+"""The mean height of the near side of round wood over its axis, in radii."""
+ACROSS_ERR, DEPTH_ERR = 0.002, 0.006
+"""Standard deviations of a sample, metres: across the view; along it at `AT`, growing as z^2."""
+HEAD_ON = 0.95
+"""Cosine between branch and line of sight over which a branch is seen head on, and dropped."""
+TINY = 1e-9
+AT = 1.5
+"""Depth at which `DEPTH_ERR` holds, metres."""
+CLOUD_ERR = 0.004
+"""Standard deviation of a sample of a partial cloud, metres, any direction."""
+
+
+@dataclass(frozen=True, eq=False)
+class Threads:
+    """S samples of branch axes in the view's frame: xyz (S, 3), axis (S, 3), doubt (S, 3, 3).
+
+    The axis is a unit vector of either sign; the doubt a covariance, square metres.
+    """
+
+    xyz: Floats
+    axis: Floats
+    doubt: Floats
+
+    def __len__(self) -> int:
+        return len(self.xyz)
+
+
+def threads_of(seen: Seen, rng: np.random.Generator) -> Threads:
+    """The samples of a view's branch axes; there may be none."""
+    surface, size = cover(seen.xyz, rng.permutation(len(seen.xyz)), THIN)
+    drawn, axis, line, aside, _ = contract(surface, np.sqrt(size.astype(float)), AROUND, ROUNDS)
+    rows = _spaced(drawn, np.flatnonzero((line >= LINE) & (aside <= ASIDE)))
+    start, near = within(drawn, drawn[rows], BESIDE)
+    kept = np.diff(start) >= FEWEST
+    if seen.pixel == 0:
+        doubt = np.broadcast_to(CLOUD_ERR**2 * np.eye(3), (int(kept.sum()), 3, 3))
+        return Threads(drawn[rows[kept]], axis[rows[kept]], np.ascontiguousarray(doubt))
+    ray = surface / np.maximum(np.linalg.norm(surface, axis=1, keepdims=True), TINY)
+    wide = _half_width(surface - drawn, axis, ray, start, near)
+    xyz = drawn[rows] + _depth_of_axis(drawn[rows], axis[rows], ray[rows], wide, seen.pixel)
+    kept &= np.abs((axis[rows] * ray[rows]).sum(axis=1)) <= HEAD_ON
+    return Threads(xyz[kept], axis[rows[kept]], _doubt(xyz[kept], ray[rows[kept]]))
+
+
+def _half_width(off: Floats, axis: Floats, ray: Floats, start: Ints, near: Ints) -> Floats:
+    """Half the width (N,) of the ribbons of some samples, from the points drawn near to each.
+
+    The points (P,) were drawn by `off` (P, 3). A ribbon evenly filled from -h to h has the mean
+    square h^2 / 3.
+    """
+    side = np.cross(axis, ray)
+    side /= np.maximum(np.linalg.norm(side, axis=1, keepdims=True), TINY)
+    square = (off * side).sum(axis=1) ** 2
+    total = np.concatenate([[0.0], square[near].cumsum()])
+    return np.asarray(np.sqrt(3 * np.diff(total[start]) / np.maximum(np.diff(start), 1)))
+
+
+def _depth_of_axis(xyz: Floats, axis: Floats, ray: Floats, wide: Floats, pixel: float) -> Floats:
+    """How far (N, 3) the axis lies behind the middle of the ribbon that is seen.
+
+    The radius is half the width less the spill. Where a branch leads away from the camera, each
+    pixel also has the depth of what is nearest within the spill, which is nearer.
+    """
+    spill = SPILL * pixel * xyz[:, 2]
+    radius = np.clip(wide - spill, *RADII)
+    sine = np.abs((axis * ray).sum(axis=1))
+    nearer = spill * sine / np.sqrt(np.maximum(1 - sine**2, 1 - HEAD_ON**2))
+    return np.asarray((BULGE * radius + nearer)[:, None] * ray)
+
+
+def _doubt(xyz: Floats, ray: Floats) -> Floats:
+    """Covariances (N, 3, 3) of samples: good across the view, worse along it."""
+    along = DEPTH_ERR * (xyz[:, 2] / AT) ** 2
+    both = ray[:, :, None] * ray[:, None, :]
+    return np.asarray(ACROSS_ERR**2 * np.eye(3) + along[:, None, None] ** 2 * both)
+
+
+def _spaced(xyz: Floats, rows: Ints) -> Ints:
+    """One of the rows of xyz (P, 3) in each cube of side `SPACING`."""
+    cells = np.floor(xyz[rows] / SPACING).astype(np.int64)
+    return np.asarray(rows[np.unique(cells, axis=0, return_index=True)[1]])
