@@ -104,9 +104,7 @@ def normal_equations(
 
 
 @kernel
-def residuals(
-    xyz: Floats, axis: Floats, doubt: Floats, partner: Ints
-) -> tuple[Floats, Floats]:
+def residuals(xyz: Floats, axis: Floats, doubt: Floats, partner: Ints) -> tuple[Floats, Floats]:
     """How far each sample is from the line of each partner (S, V): metres, standard deviations.
 
     NaN where there is no partner.

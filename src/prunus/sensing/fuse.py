@@ -24,10 +24,13 @@ SAMPLES = 60
 """A view with fewer samples of branches cannot be placed."""
 FAR = 4.0
 """A view moved or turned by more than so many standard deviations of the prior does not fit."""
-AGREE = 0.6
+AGREE = 0.4
 """Nor does one whose agreement is under this share of the median of the others'."""
-APART = 2.0
+APART = 2.5
 """Nor one whose distance is over so many times the median of the others'."""
+TINY = 1e-3
+
+_Fault = tuple[float, str]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,12 +74,22 @@ def fuse(views: list[RigView], seed: int = 0) -> Fused:
         raise PrunusError("the views hold no points; expected some that see wood")
     threads = [threads_of(one, rng) for one in held]
     placed = place(held, threads)
-    kept = [(one, own) for one, own in zip(placed, held, strict=True) if not one.refused]
-    xyz = np.concatenate([one.pose.apply(own.xyz) for one, own in kept])
-    coloured = all(own.rgb is not None for _, own in kept)
-    rgb = np.concatenate([own.rgb for _, own in kept if own.rgb is not None]) if coloured else None
+    kept = [k for k, view in enumerate(placed) if not view.refused]
+    xyz, rgb = merged([held[k] for k in kept], [placed[k].pose for k in kept], rng)
+    return Fused(xyz, rgb, tuple(placed))
+
+
+def merged(
+    held: list[Seen], poses: list[RigidMotion], rng: np.random.Generator
+) -> tuple[Floats, Bytes | None]:
+    """The points of all views in these poses, one in each cube of side `VOXEL`, and their colours.
+
+    Colours are kept where every view has them.
+    """
+    xyz = np.concatenate([pose.apply(own.xyz) for pose, own in zip(poses, held, strict=True)])
     rows = _one_each(xyz, rng)
-    return Fused(xyz[rows], None if rgb is None else rgb[rows], tuple(placed))
+    colours = [own.rgb for own in held if own.rgb is not None]
+    return xyz[rows], np.concatenate(colours)[rows] if len(colours) == len(held) else None
 
 
 def place(held: list[Seen], threads: list[Threads]) -> list[Placed]:
@@ -86,15 +99,18 @@ def place(held: list[Seen], threads: list[Threads]) -> list[Placed]:
     placed: dict[int, Placed] = {}
     inside = list(range(len(held)))
     while True:
-        own = [threads[v] for v in inside]
-        start = [nominal[v] for v in inside]
+        own, start = [threads[v] for v in inside], [nominal[v] for v in inside]
         poses = refined(own, start) if len(inside) > 1 else start
         fit = fit_of(own, poses)
-        why = _misfits([len(one) for one in own], start, poses, fit)
+        went = [_went(*three) for three in zip(poses, start, own, strict=True)]
+        faults = _faults(own, went, fit)
         for k, v in enumerate(inside):
-            placed[v] = _placed(held[v], poses[k], before.apart[v], fit, k, why[k][1])
-        worst = max(range(len(inside)), key=lambda k: why[k][0])
-        if not why[worst][1] or len(inside) == 1:
+            placed[v] = Placed(
+                held[v].name, poses[k], len(held[v].xyz), held[v].flying, before.apart[v],
+                fit.apart[k], fit.agree[k], went[k][0], math.degrees(went[k][1]), faults[k][1],
+            )  # fmt: skip
+        worst = max(range(len(inside)), key=lambda k: faults[k][0])
+        if not faults[worst][1]:
             break
         del inside[worst]
     if len(inside) == 1 < len(held):
@@ -103,43 +119,42 @@ def place(held: list[Seen], threads: list[Threads]) -> list[Placed]:
     return [placed[v] for v in range(len(held))]
 
 
-def _misfits(
-    samples: list[int], nominal: list[RigidMotion], poses: list[RigidMotion], fit: Fit
-) -> list[tuple[float, str]]:
-    """How far each view is beyond what is allowed (1 = just so), and in words ("" = it fits)."""
+def _went(pose: RigidMotion, before: RigidMotion, own: Threads) -> tuple[float, float]:
+    """How far a view was moved, metres, and turned, radians."""
+    moved = np.linalg.norm(pose.apply(own.held) - before.apply(own.held))
+    return float(moved), float(np.linalg.norm(turn_of(pose, before)))
+
+
+def _faults(own: list[Threads], went: list[tuple[float, float]], fit: Fit) -> list[_Fault]:
+    """How far each view is beyond what is allowed (1 = just so), and in words ("" = it fits).
+
+    A view alone has no fault.
+    """
     found = []
-    for k, pose in enumerate(poses):
-        moved = float(np.linalg.norm(pose.translation - nominal[k].translation))
-        turned = float(np.linalg.norm(turn_of(pose, nominal[k])))
-        others = [o for o in range(len(poses)) if o != k]
-        apart = float(np.nanmedian(fit.apart[others]))
-        agree = float(np.median(fit.agree[others]))
-        reasons = [
-            (SAMPLES / max(samples[k], 1), f"only {samples[k]} samples of branches seen"),
-            (moved / (FAR * MOVED), f"moved by {moved:.3f} m"),
+    for k, (moved, turned) in enumerate(went):
+        others = np.arange(len(own)) != k
+        apart, agree = fit.apart[k], fit.agree[k]
+        faults = [
+            (SAMPLES / max(len(own[k]), 1), f"only {len(own[k])} samples of branches seen"),
+            (moved / (FAR * MOVED), f"moved by {1000 * moved:.0f} mm"),
             (turned / (FAR * TURNED), f"turned by {math.degrees(turned):.1f} degrees"),
-            (AGREE * agree / max(fit.agree[k], 1e-3), f"{fit.agree[k]:.0%} of it is confirmed"),
-            (fit.apart[k] / (APART * apart), f"{1000 * fit.apart[k]:.1f} mm from the others"),
+            (AGREE * _median(fit.agree[others]) / max(agree, TINY), f"{agree:.0%} confirmed"),
+            (apart / (APART * _median(fit.apart[others])), f"{1000 * apart:.1f} mm from others"),
         ]
-        worst = max(reasons, key=lambda reason: np.nan_to_num(reason[0], nan=np.inf))
-        found.append((worst[0], worst[1] if worst[0] > 1 else ""))
+        worst = max(fault for fault in faults if not math.isnan(fault[0]))
+        found.append(worst if worst[0] > 1 and others.any() else (0.0, ""))
     return found
 
 
-def _placed(
-    own: Seen, pose: RigidMotion, before: float, fit: Fit, k: int, refused: str
-) -> Placed:
-    moved = float(np.linalg.norm(pose.translation - own.nominal.translation))
-    turned = math.degrees(float(np.linalg.norm(turn_of(pose, own.nominal))))
-    return Placed(
-        own.name, pose, len(own.xyz), own.flying, float(before), float(fit.apart[k]),
-        float(fit.agree[k]), moved, turned, refused,
-    )  # fmt: skip
+def _median(values: Floats) -> float:
+    """The median of what is known; NaN where nothing is."""
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if len(known) else math.nan
 
 
 def _one_each(xyz: Floats, rng: np.random.Generator) -> Ints:
     """Rows of xyz (P, 3): one, drawn at random, in each cube of side `VOXEL`."""
     order = rng.permutation(len(xyz))
     cells = np.floor((xyz[order] - xyz.min(axis=0)) / VOXEL).astype(np.int64)
-    ahead = (cells[:, 0] << 42) | (cells[:, 1] << 21) | cells[:, 2]
-    return np.sort(order[np.unique(ahead, return_index=True)[1]])
+    cube = (cells[:, 0] << 42) | (cells[:, 1] << 21) | cells[:, 2]
+    return np.sort(order[np.unique(cube, return_index=True)[1]])

@@ -78,13 +78,13 @@ def fit_of(threads: list[Threads], poses: list[RigidMotion]) -> Fit:
     wide = partners(xyz, axis, view, len(threads), WIDE.reach, WIDE.alike)
     metres, _ = residuals(xyz, axis, doubt, wide)
     close = partners(xyz, axis, view, len(threads), CLOSE.reach, CLOSE.alike)
-    nearest = np.nanmin(np.c_[metres, np.full(len(metres), np.inf)], axis=1)
-    met = (close >= 0).any(axis=1)
+    nearest = np.where(np.isnan(metres), np.inf, metres).min(axis=1)
+    met = (close >= 0).max(axis=1)
     apart, agree = np.full(len(threads), np.nan), np.zeros(len(threads))
-    for v in range(len(threads)):
+    for v in np.unique(view):
         near = nearest[(view == v) & np.isfinite(nearest)]
         apart[v] = np.median(near) if len(near) else np.nan
-        agree[v] = met[view == v].mean() if (view == v).any() else 0.0
+        agree[v] = np.mean(met[view == v])
     return Fit(apart, agree)
 
 
@@ -114,10 +114,10 @@ def _step(
     matrix, right = ALIKE_ERR * matrix, ALIKE_ERR * right
     weight = np.repeat([TURNED**-2.0, MOVED**-2.0], 3)
     for v, (pose, before) in enumerate(zip(poses, nominal, strict=True)):
-        own = slice(6 * v, 6 * v + 6)
+        own, held = slice(6 * v, 6 * v + 6), threads[v].held
         jacobian = np.eye(6)
-        jacobian[3:, :3] = -_cross(pose.translation - middle)
-        off = np.concatenate([turn_of(pose, before), pose.translation - before.translation])
+        jacobian[3:, :3] = -_cross(pose.apply(held) - middle)
+        off = np.concatenate([turn_of(pose, before), pose.apply(held) - before.apply(held)])
         matrix[own, own] += jacobian.T @ (weight[:, None] * jacobian)
         right[own] -= jacobian.T @ (weight * off)
     return np.linalg.solve(matrix, right).reshape(-1, 6)

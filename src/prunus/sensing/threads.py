@@ -23,7 +23,7 @@ AROUND = 0.03
 """Points so near, metres, decide which line a point goes to."""
 ROUNDS = 3
 """How often points are drawn together."""
-LINE = 0.8
+LINE = 0.9
 """Least share by which the surroundings of a sample are a line (see `kernels.axes.main_axis`)."""
 ASIDE = 0.3
 """The middle of its surroundings is so far along the line from a sample, at most, in `AROUND`."""
@@ -33,19 +33,19 @@ BESIDE = 0.02
 """The width is that of the points drawn to within so many metres of a sample."""
 FEWEST = 5
 """Samples with fewer such points are dropped."""
-SPILL = 1.0
-"""Pixels by which stereo matching lets wood spill over its edges, in the mean."""
-RADII = (0.001, 0.05)
-"""Branches are no thinner and no thicker, metres."""
-BULGE = 0.9
-"""The mean height of the near side of round wood over its axis, in radii."""
-ACROSS_ERR, DEPTH_ERR = 0.002, 0.006
-"""Standard deviations of a sample, metres: across the view; along it at `AT`, growing as z^2."""
+DEEPER = (0.72, -0.24, 0.42)
+"""How far the axis lies behind the middle of its ribbon: shares of half the ribbon's width, of a
+pixel's width, and of what a pixel's width gains in depth along the branch; and `DEEPER_BY`."""
+DEEPER_BY = 0.0022
+"""Metres to be added. Fitted to simulated scans (`docs/fuse.md`), as are the errors below."""
 HEAD_ON = 0.95
 """Cosine between branch and line of sight over which a branch is seen head on, and dropped."""
+ACROSS_ERR = (0.0007, 0.05, 0.015)
+"""Standard deviation of a sample across the view: metres, shares of half the ribbon's width, and
+metres for surroundings that are no line at all."""
+DEPTH_ERR = (0.0021, 0.0015, 0.15)
+"""Standard deviations of its depth: metres at 1 m, growing as z^2; metres; shares of that width."""
 TINY = 1e-9
-AT = 1.5
-"""Depth at which `DEPTH_ERR` holds, metres."""
 CLOUD_ERR = 0.004
 """Standard deviation of a sample of a partial cloud, metres, any direction."""
 
@@ -54,12 +54,14 @@ CLOUD_ERR = 0.004
 class Threads:
     """S samples of branch axes in the view's frame: xyz (S, 3), axis (S, 3), doubt (S, 3, 3).
 
-    The axis is a unit vector of either sign; the doubt a covariance, square metres.
+    The axis is a unit vector of either sign; the doubt a covariance, square metres. `held` (3,) is
+    the place whose shift counts as that of the view: the camera, or the middle of a partial cloud.
     """
 
     xyz: Floats
     axis: Floats
     doubt: Floats
+    held: Floats
 
     def __len__(self) -> int:
         return len(self.xyz)
@@ -73,13 +75,15 @@ def threads_of(seen: Seen, rng: np.random.Generator) -> Threads:
     start, near = within(drawn, drawn[rows], BESIDE)
     kept = np.diff(start) >= FEWEST
     if seen.pixel == 0:
+        middle = seen.xyz.mean(axis=0) if len(seen.xyz) else np.zeros(3)
         doubt = np.broadcast_to(CLOUD_ERR**2 * np.eye(3), (int(kept.sum()), 3, 3))
-        return Threads(drawn[rows[kept]], axis[rows[kept]], np.ascontiguousarray(doubt))
+        return Threads(drawn[rows[kept]], axis[rows[kept]], np.ascontiguousarray(doubt), middle)
     ray = surface / np.maximum(np.linalg.norm(surface, axis=1, keepdims=True), TINY)
     wide = _half_width(surface - drawn, axis, ray, start, near)
-    xyz = drawn[rows] + _depth_of_axis(drawn[rows], axis[rows], ray[rows], wide, seen.pixel)
-    kept &= np.abs((axis[rows] * ray[rows]).sum(axis=1)) <= HEAD_ON
-    return Threads(xyz[kept], axis[rows[kept]], _doubt(xyz[kept], ray[rows[kept]]))
+    xyz, axis, ray, line = drawn[rows], axis[rows], ray[rows], line[rows]
+    xyz = xyz + _to_axis(xyz, axis, ray, wide, seen.pixel)
+    kept &= np.abs((axis * ray).sum(axis=1)) <= HEAD_ON
+    return Threads(xyz[kept], axis[kept], _doubt(xyz, ray, wide, line)[kept], np.zeros(3))
 
 
 def _half_width(off: Floats, axis: Floats, ray: Floats, start: Ints, near: Ints) -> Floats:
@@ -95,24 +99,25 @@ def _half_width(off: Floats, axis: Floats, ray: Floats, start: Ints, near: Ints)
     return np.asarray(np.sqrt(3 * np.diff(total[start]) / np.maximum(np.diff(start), 1)))
 
 
-def _depth_of_axis(xyz: Floats, axis: Floats, ray: Floats, wide: Floats, pixel: float) -> Floats:
-    """How far (N, 3) the axis lies behind the middle of the ribbon that is seen.
+def _to_axis(xyz: Floats, axis: Floats, ray: Floats, wide: Floats, pixel: float) -> Floats:
+    """From the middles of ribbons to the axes of their branches (N, 3).
 
-    The radius is half the width less the spill. Where a branch leads away from the camera, each
-    pixel also has the depth of what is nearest within the spill, which is nearer.
+    That is the radius, which grows with the width. And where a branch leads away from the camera,
+    each pixel has the depth of what is nearest of all that spills into it, which is nearer.
     """
-    spill = SPILL * pixel * xyz[:, 2]
-    radius = np.clip(wide - spill, *RADII)
-    sine = np.abs((axis * ray).sum(axis=1))
-    nearer = spill * sine / np.sqrt(np.maximum(1 - sine**2, 1 - HEAD_ON**2))
-    return np.asarray((BULGE * radius + nearer)[:, None] * ray)
+    width = pixel * xyz[:, 2]
+    sine = np.minimum(np.abs((axis * ray).sum(axis=1)), HEAD_ON)
+    gained = width * sine / np.sqrt(1 - sine**2)
+    deeper = np.column_stack([wide, width, gained]) @ DEEPER + DEEPER_BY
+    return np.asarray(np.maximum(deeper, 0.0)[:, None] * ray)
 
 
-def _doubt(xyz: Floats, ray: Floats) -> Floats:
+def _doubt(xyz: Floats, ray: Floats, wide: Floats, line: Floats) -> Floats:
     """Covariances (N, 3, 3) of samples: good across the view, worse along it."""
-    along = DEPTH_ERR * (xyz[:, 2] / AT) ** 2
+    across = ACROSS_ERR[0] + ACROSS_ERR[1] * wide + ACROSS_ERR[2] * (1 - line)
+    along = np.hypot(DEPTH_ERR[0] * xyz[:, 2] ** 2, DEPTH_ERR[1] + DEPTH_ERR[2] * wide)
     both = ray[:, :, None] * ray[:, None, :]
-    return np.asarray(ACROSS_ERR**2 * np.eye(3) + along[:, None, None] ** 2 * both)
+    return np.asarray((across**2)[:, None, None] * np.eye(3) + (along**2)[:, None, None] * both)
 
 
 def _spaced(xyz: Floats, rows: Ints) -> Ints:
