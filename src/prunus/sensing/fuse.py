@@ -26,6 +26,8 @@ FAR = 4.0
 """A view moved or turned by more than so many standard deviations of the prior does not fit."""
 AGREE = 0.4
 """Nor does one whose agreement is under this share of the median of the others'."""
+CONFIRMED = 0.1
+"""Nor one whose agreement is under this."""
 APART = 2.5
 """Nor one whose distance is over so many times the median of the others'."""
 TINY = 1e-3
@@ -133,12 +135,16 @@ def _faults(own: list[Threads], went: list[tuple[float, float]], fit: Fit) -> li
     found = []
     for k, (moved, turned) in enumerate(went):
         others = np.arange(len(own)) != k
-        apart, agree = fit.apart[k], fit.agree[k]
+        apart, agree = float(fit.apart[k]), float(fit.agree[k])
+        wanted = np.fmax(AGREE * _median(fit.agree[others]), CONFIRMED)
         faults = [
-            (SAMPLES / max(len(own[k]), 1), f"only {len(own[k])} samples of branches seen"),
+            (
+                math.inf if len(own[k]) < SAMPLES else 0.0,
+                f"only {len(own[k])} samples of branches seen",
+            ),
             (moved / (FAR * MOVED), f"moved by {1000 * moved:.0f} mm"),
             (turned / (FAR * TURNED), f"turned by {math.degrees(turned):.1f} degrees"),
-            (AGREE * _median(fit.agree[others]) / max(agree, TINY), f"{agree:.0%} confirmed"),
+            (float(wanted) / max(agree, TINY), f"{agree:.0%} of it confirmed by others"),
             (apart / (APART * _median(fit.apart[others])), f"{1000 * apart:.1f} mm from others"),
         ]
         worst = max(fault for fault in faults if not math.isnan(fault[0]))
