@@ -19,7 +19,7 @@ from prunus.sensing.views import Seen
 
 THIN = 0.004
 """Points are first thinned to balls of this radius, metres."""
-AROUND = 0.03
+AROUND = 0.025
 """Points so near, metres, decide which line a point goes to."""
 ROUNDS = 3
 """How often points are drawn together."""
