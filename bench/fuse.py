@@ -109,6 +109,7 @@ def main() -> None:
             refused += sum(bool(view.refused) for view in fused.views)
             found.setdefault(f"{name}, nominal", []).append(errors(nominal, true))
             found.setdefault(f"{name}, refined", []).append(errors(poses, true))
+            print(row(f"{seed} {name}", [errors(poses, true)]), flush=True)
             if seed < chosen.seed + chosen.widths:
                 kinds = {f"{name}, nominal": nominal, f"{name}, refined": poses, "true": true}
                 for kind, placed in kinds.items():

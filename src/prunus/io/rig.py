@@ -104,13 +104,12 @@ def _depth(record: ViewRecord, file: Path, where: str, pose: RigidMotion) -> Dep
     expected = (record.height or depth.shape[0], record.width or depth.shape[1])
     if depth.shape != expected:
         raise PrunusError(f"{path}: the image is {_size(depth.shape)}; expected {_size(expected)}")
-    colour = record.colour and read_colour(file.parent / record.colour, expected)
-    mask = record.mask and read_mask(file.parent / record.mask, expected)
-    camera = _camera(record, file, where)
-    return DepthView(
-        path.name, depth, camera, pose, None if isinstance(colour, str) else colour,
-        None if isinstance(mask, str) else mask,
-    )  # fmt: skip
+    colour, mask = None, None
+    if record.colour is not None:
+        colour = read_colour(file.parent / record.colour, expected)
+    if record.mask is not None:
+        mask = read_mask(file.parent / record.mask, expected)
+    return DepthView(path.name, depth, _camera(record, file, where), pose, colour, mask)
 
 
 def _camera(record: ViewRecord, file: Path, where: str) -> Camera:

@@ -96,29 +96,39 @@ def merged(
 
 def place(held: list[Seen], threads: list[Threads]) -> list[Placed]:
     """Refine the poses of all views that fit, leaving out the worst one by one."""
-    nominal = [one.nominal for one in held]
-    before = fit_of(threads, nominal)
+    before = fit_of(threads, [one.nominal for one in held])
     placed: dict[int, Placed] = {}
     inside = list(range(len(held)))
     while True:
-        own, start = [threads[v] for v in inside], [nominal[v] for v in inside]
-        poses = refined(own, start) if len(inside) > 1 else start
-        fit = fit_of(own, poses)
-        went = [_went(*three) for three in zip(poses, start, own, strict=True)]
-        faults = _faults(own, went, fit)
-        for k, v in enumerate(inside):
-            placed[v] = Placed(
-                held[v].name, poses[k], len(held[v].xyz), held[v].flying, before.apart[v],
-                fit.apart[k], fit.agree[k], went[k][0], math.degrees(went[k][1]), faults[k][1],
-            )  # fmt: skip
-        worst = max(range(len(inside)), key=lambda k: faults[k][0])
-        if not faults[worst][1]:
+        tried, faults = _try(inside, held, threads, before)
+        placed |= tried
+        worst = int(np.argmax(faults))
+        if faults[worst] == 0:
             break
         del inside[worst]
     if len(inside) == 1 < len(held):
         reasons = "; ".join(f"{one.name}: {one.refused}" for one in placed.values() if one.refused)
         raise PrunusError(f"no two of {len(held)} views fit together ({reasons}); expected two")
     return [placed[v] for v in range(len(held))]
+
+
+def _try(
+    inside: list[int], held: list[Seen], threads: list[Threads], before: Fit
+) -> tuple[dict[int, Placed], list[float]]:
+    """The views inside with their poses refined together, and how great the fault of each is."""
+    own, nominal = [threads[v] for v in inside], [held[v].nominal for v in inside]
+    poses = refined(own, nominal) if len(inside) > 1 else nominal
+    fit = fit_of(own, poses)
+    went = [_went(*three) for three in zip(poses, nominal, own, strict=True)]
+    faults = _faults(own, went, fit)
+    placed = {}
+    for k, v in enumerate(inside):
+        moved, turned = went[k]
+        placed[v] = Placed(
+            held[v].name, poses[k], len(held[v].xyz), held[v].flying, float(before.apart[v]),
+            float(fit.apart[k]), float(fit.agree[k]), moved, math.degrees(turned), faults[k][1],
+        )  # fmt: skip
+    return placed, [fault[0] for fault in faults]
 
 
 def _went(pose: RigidMotion, before: RigidMotion, own: Threads) -> tuple[float, float]:

@@ -21,9 +21,9 @@ THIN = 0.004
 """Points are first thinned to balls of this radius, metres."""
 AROUND = 0.025
 """Points so near, metres, decide which line a point goes to."""
-ROUNDS = 3
+ROUNDS = 5
 """How often points are drawn together."""
-LINE = 0.9
+LINE = 0.95
 """Least share by which the surroundings of a sample are a line (see `kernels.axes.main_axis`)."""
 ASIDE = 0.3
 """The middle of its surroundings is so far along the line from a sample, at most, in `AROUND`."""
