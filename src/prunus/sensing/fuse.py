@@ -24,11 +24,11 @@ SAMPLES = 60
 """A view with fewer samples of branches cannot be placed."""
 FAR = 4.0
 """A view moved or turned by more than so many standard deviations of the prior does not fit."""
-AGREE = 0.4
+AGREE = 0.65
 """Nor does one whose agreement is under this share of the median of the others'."""
-CONFIRMED = 0.1
+CONFIRMED = 0.2
 """Nor one whose agreement is under this."""
-APART = 2.5
+APART = 1.8
 """Nor one whose distance is over so many times the median of the others'."""
 TINY = 1e-3
 
@@ -40,8 +40,9 @@ class Placed:
     """What became of a view: its refined pose, and the evidence.
 
     `points`, `flying`: kept and dropped; `before`, `after`: median distance across branches to the
-    other views, metres (NaN: none near); `agree`: share of its branches that others confirm;
-    `moved` (metres), `turned` (degrees): from the nominal pose; `refused`: why, "" = it is in.
+    other views, metres (NaN: none near); `agree`: the share of its samples that
+    others confirm (see `Fit`); `moved` (metres), `turned` (degrees): from the nominal pose;
+    `refused`: why, "" = it is in.
     """
 
     name: str
@@ -154,7 +155,7 @@ def _faults(own: list[Threads], went: list[tuple[float, float]], fit: Fit) -> li
             ),
             (moved / (FAR * MOVED), f"moved by {1000 * moved:.0f} mm"),
             (turned / (FAR * TURNED), f"turned by {math.degrees(turned):.1f} degrees"),
-            (float(wanted) / max(agree, TINY), f"{agree:.0%} of it confirmed by others"),
+            (float(wanted) / max(agree, TINY), f"{agree:.0%} confirmed by the views near it"),
             (apart / (APART * _median(fit.apart[others])), f"{1000 * apart:.1f} mm from others"),
         ]
         worst = max(fault for fault in faults if not math.isnan(fault[0]))

@@ -51,7 +51,7 @@ class Fit:
     """How well the views fit: median distance across branches (V,), metres, and agreement (V,).
 
     The distance is from each sample to the nearest in any other view within 8 cm (NaN: none is so
-    near); the agreement is the share of the samples with a partner within 2 cm.
+    near); the agreement is the share of these samples that have one of like direction within 2 cm.
     """
 
     apart: Floats
@@ -84,7 +84,7 @@ def fit_of(threads: list[Threads], poses: list[RigidMotion]) -> Fit:
     for v in np.unique(view):
         near = nearest[(view == v) & np.isfinite(nearest)]
         apart[v] = np.median(near) if len(near) else np.nan
-        agree[v] = np.mean(met[view == v])
+        agree[v] = np.count_nonzero(met & (view == v)) / max(len(near), 1)
     return Fit(apart, agree)
 
 
