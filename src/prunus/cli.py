@@ -357,6 +357,30 @@ def experiment(
 
 
 @app.command()
+def fuse(
+    rig: Annotated[Path, typer.Argument(help="Folder with rig.json, or with *_cloud.ply.")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Cloud to write, as .ply.")],
+    report: Annotated[
+        Path | None, typer.Option(help="Write refined poses and residuals as JSON.")
+    ] = None,
+) -> None:
+    """Fuse depth images or partial clouds of a rig to one cloud; refines their poses together.
+
+    `prunus simulate -n 1 -o rig --views`, then `prunus fuse rig/tree_000000 -o raw.ply`
+
+    docs/fuse.md describes rig.json. A view that does not fit the others is left out, and said.
+    """
+    from prunus.fusing import fuse_folder, lines_of
+
+    try:
+        fused = fuse_folder(rig, output, report)
+    except PrunusError as error:
+        _stop(error)
+    for line in [*lines_of(fused), f"{len(fused.xyz)} points written to {output}"]:
+        typer.echo(line)
+
+
+@app.command()
 def convert(
     source: Annotated[Path, typer.Argument(help="A skeleton (.json, .swc) or a point cloud.")],
     target: Annotated[Path, typer.Argument(help="What to write; the ending says which kind.")],

@@ -8,18 +8,23 @@ from prunus.model.arrays import Bools, Floats, Ints
 from prunus.model.cloud import FRAMES, PointCloud, RigidMotion
 from prunus.model.graph import CandidateGraph, ScoredGraph, SeededGraph, Superpoints
 from prunus.model.kind import Kind
+from prunus.model.rig import Camera, CloudView, DepthView, RigView
 from prunus.model.skeleton import Label, Lines, Skeleton, parents_first
 
 __all__ = [
     "FRAMES",
     "Bools",
+    "Camera",
     "CandidateGraph",
+    "CloudView",
+    "DepthView",
     "Floats",
     "Ints",
     "Kind",
     "Label",
     "Lines",
     "PointCloud",
+    "RigView",
     "RigidMotion",
     "ScoredGraph",
     "SeededGraph",
