@@ -80,8 +80,8 @@ def main() -> None:
         records = list(pool.map(measured, seeds))
     for name in dict.fromkeys(name for record in records for name in record):
         values = np.array([record[name] for record in records if name in record])
-        low, middle, high = np.quantile(values, [0.1, 0.5, 0.9])
-        print(f"{name:30} mean {values.mean():9.3f}  median {middle:9.3f}  "
+        low, middle, high = np.nanquantile(values, [0.1, 0.5, 0.9])
+        print(f"{name:30} mean {np.nanmean(values):9.3f}  median {middle:9.3f}  "
               f"10 % {low:9.3f}  90 % {high:9.3f}")  # fmt: skip
     feet = np.array([record["foot"] for record in records])
     found = np.array([record["kept"] > 0.5 for record in records])

@@ -86,7 +86,7 @@ def skeletonize(
         scored = _scored(cloud, scorer, params, rng, seconds)
         notes.append(isolated.told())
     with _timed(seconds, "seeds"):
-        foot = find_foot(cloud, scored) if at is None else None
+        foot = None if at is not None else isolated.foot if isolated else find_foot(cloud, scored)
         hoped = hopeful(scored, scorer, params.confidence)
         seeded, warnings = find_seeds(hoped, params, foot if at is None else at)
     if foot is not None:
