@@ -42,6 +42,6 @@ def test_the_readme_shows_every_command() -> None:
     from prunus.cli import app
 
     help_text = CliRunner().invoke(app, ["--help"]).stdout
-    for command in ("demo", "skeletonize", "simulate", "train", "convert"):
+    for command in ("demo", "skeletonize", "isolate", "fuse", "simulate", "train", "convert"):
         assert command in help_text
         assert f"prunus {command}" in (ROOT / "README.md").read_text() or command == "demo"

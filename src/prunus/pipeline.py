@@ -97,6 +97,8 @@ def skeletonize(
         with _timed(seconds, "search"):
             found = search_learned(seeded, shipped_score())
     else:
+        if params.search.score == "learned":
+            notes.append(f"{scorer.name} tells no categories: the paper's score was taken")
         found = _as_in_the_paper(seeded, params, rng, seconds)
     with _timed(seconds, "measures"):
         warnings += remarks(found.skeleton, seeded, for_tips=not learned)
