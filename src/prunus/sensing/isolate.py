@@ -45,10 +45,12 @@ SNAPS = 0.25
 class Isolated:
     """What each point (P,) of a scan is to one tree (`model.Kind`), and where that stands.
 
-    `foot` (3,), house frame, is the lowest point of its trunk that the scan holds.
+    `base` (3,), house frame, is where the network looked from; `foot` (3,) the lowest point of the
+    trunk that the scan holds.
     """
 
     kind: Ints
+    base: Floats
     foot: Floats
 
     @property
@@ -138,7 +140,7 @@ class Scene:
 
     def _isolated(self, likely: Floats, base: Floats) -> Isolated:
         kind = np.where(self.owner < 0, Kind.STRAY, likely.argmax(axis=1)[self.owner])
-        return Isolated(kind, foot_of(self.cloud.xyz[kind == Kind.TARGET], base))
+        return Isolated(kind, base, foot_of(self.cloud.xyz[kind == Kind.TARGET], base))
 
 
 def look_at(cloud: PointCloud, params: Parameters, rng: np.random.Generator) -> Scene:
@@ -161,7 +163,7 @@ def isolate(scene: Scene, at: Floats | None) -> Isolated:
     """
     if at is None:
         if scene.trees:
-            return scene.trees[0]
+            return scene.tree_at(scene.trees[0].base)
         raise PrunusError(
             "no trunk was found in the scan; expected one in view, Z up and in metres "
             "(or say where the tree stands: --at X Y Z)"

@@ -1,6 +1,6 @@
 """Trellis wires: thin, straight, level, and longer than any branch (beyond the paper).
 
-Wood grows crooked: over a metre and a half no branch keeps to a line within a finger's breadth,
+Wood grows crooked: over two metres no branch keeps to a line within a finger's breadth,
 and no support does so level. What does is a wire, however thick the camera drew it. Only what runs
 along it is the wire's; leaders cross it, and side branches that touch it run another way.
 """
@@ -26,7 +26,7 @@ BLURRED = 0.035
 APART = 0.80
 """A wire is guessed from two points at least so far apart, metres."""
 BIN = 0.05
-LONG = 1.5
+LONG = 2.0
 """A wire is seen along so many metres at least, in steps of `BIN`."""
 FILLED = 0.6
 """And along so large a share of its way."""
