@@ -143,12 +143,12 @@ def _isolated(
     known = scored if scorer.name == "cnn" else judged_graph(cloud, params, rng)
     if len(known.edges) == 0:
         return None
-    scene = Scene.of(cloud, known)
-    if wanted == "auto" and at is None and not scene.trees:
+    drawn = Scene.of(known.candidates.superpoints.cloud, known)
+    if wanted == "auto" and at is None and not drawn.trees:
         return None
-    isolated = isolate(scene, at)
-    raw = isolated.removed >= params.isolation.raw_from and isolated.target.mean() >= LEAST_LEFT
-    return isolated if raw or wanted == "always" else None
+    some = isolate(drawn, at)
+    raw = some.removed >= params.isolation.raw_from and some.target.mean() >= LEAST_LEFT
+    return Scene.of(cloud, known).tree_at(some.base) if raw or wanted == "always" else None
 
 
 LEAST_LEFT = 0.02

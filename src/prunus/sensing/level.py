@@ -29,6 +29,8 @@ BELOW = 2.0
 """A point below the ground speaks against it as much as so many on it speak for it."""
 TRIES, BROAD, FEW = 800, 0.05, 20
 """Planes through so many triples, spanning so many square metres; fewer points tell nothing."""
+LOOKED_AT = 200_000
+"""Of so many points."""
 LEVEL = 0.35
 """Wood is level when it rises less than so many metres a metre."""
 BESIDE = math.radians(12)
@@ -40,6 +42,7 @@ ALIKE = 0.6
 def find_turn(xyz: Floats, rng: np.random.Generator) -> tuple[Floats, list[str]]:
     """The rotation (3, 3) that sets points (P, 3) of a named house frame right; what was turned."""
     turn, notes = np.eye(3), list[str]()
+    xyz = xyz[:: max(1, len(xyz) // LOOKED_AT)]
     up = ground_normal(xyz, rng)
     tilt = 0.0 if up is None else math.degrees(math.acos(min(1.0, up[2])))
     if up is not None and TILTS[0] <= tilt <= TILTS[1]:
@@ -82,10 +85,10 @@ def ground_normal(xyz: Floats, rng: np.random.Generator) -> Floats | None:
 
 def lowest(xyz: Floats) -> Floats:
     """The lowest point of each square of the ground plan; points almost alone are strays."""
-    _, cube, held = np.unique(
-        np.floor(xyz / CUBE).astype(np.int64), axis=0, return_inverse=True, return_counts=True
-    )
-    xyz = xyz[held[cube.ravel()] >= ALONE]
+    place = np.floor((xyz - xyz.min(axis=0)) / CUBE).astype(np.int64)
+    key = (place[:, 0] << 42) | (place[:, 1] << 21) | place[:, 2]
+    _, cube, held = np.unique(key, return_inverse=True, return_counts=True)
+    xyz = xyz[held[cube] >= ALONE]
     square = np.floor(xyz[:, :2] / SQUARE).astype(np.int64)
     order = np.lexsort([xyz[:, 2], square[:, 1], square[:, 0]])
     first = np.ones(len(order), np.bool_)
