@@ -8,7 +8,7 @@ import pytest
 from prunus.errors import PrunusError
 from prunus.evaluate.curves import curve_measures
 from prunus.intake import open_scan
-from prunus.measure import leaders
+from prunus.measure import branches, leaders
 from prunus.model import Label, PointCloud, Skeleton
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
@@ -76,3 +76,15 @@ def test_points_on_an_upright_line_are_a_bare_trunk_or_leader() -> None:
 def test_a_base_that_is_no_point_is_refused(base: object) -> None:
     with pytest.raises(PrunusError, match="the base is"):
         skeletonize(np.zeros((10, 3)), base)
+
+
+def test_the_real_scan_needs_no_option(real_scan: Path) -> None:
+    """Frame, tree and foot are found; the front tree alone is left, with leaders a person sees."""
+    result = skeletonize(open_scan(real_scan).cloud)
+    found = result.skeleton
+    assert result.isolated is not None
+    assert 0.5 < result.isolated.removed < 0.8
+    assert np.linalg.norm(found.xyz[0] - [1.40, 0.90, 1.42]) < 0.25
+    assert len(branches(found, Label.LEADER)) >= 4
+    assert found.xyz[:, 2].max() < 1.75  # the row behind leans away, to 2.3 m
+    assert found.xyz[:, 0].min() > -0.2  # the neighbour stands at the left
