@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.intake import Scan, open_scan
-from prunus.io.clouds import FileCloud, write_cloud
+from prunus.io.clouds import WRITTEN, FileCloud, columns_of, write_cloud
 from prunus.io.ply import ply_bytes, table_of
 from prunus.io.safely import write_bytes
 from prunus.model import Floats, Ints, Kind
@@ -84,11 +83,10 @@ def list_trees(opened: Opened) -> list[str]:
 
 
 def _trees(opened: Opened) -> list[Isolated]:
-    trees = [one for one in opened.scene.trees if one.target.any()]
-    if not trees:
+    if not opened.scene.trees:
         path = opened.scan.file.path
         raise PrunusError(f"{path}: no trunk in view; expected one, Z up and in metres")
-    return trees
+    return opened.scene.trees
 
 
 def _standing(opened: Opened, isolated: Isolated) -> str:
@@ -108,9 +106,5 @@ def write_classes(path: Path, file: FileCloud, kind: Ints) -> None:
     """Write all points of a file as PLY, with the class (P,) of each as property `kind`."""
     if path.suffix.lower() != ".ply":
         raise PrunusError(f"{path}: classes are written as .ply")
-    columns: dict[str, Any] = {name: file.xyz[:, axis] for axis, name in enumerate("xyz")}
-    if file.rgb is not None:
-        columns |= {name: file.rgb[:, c] for c, name in enumerate(("red", "green", "blue"))}
-    columns["kind"] = kind.astype(np.uint8)
-    said = ["written by prunus; unit: metre", f"kind: {KINDS}"]
-    write_bytes(path, ply_bytes({"vertex": table_of(columns)}, said))
+    columns = columns_of(file.xyz, file.rgb) | {"kind": kind.astype(np.uint8)}
+    write_bytes(path, ply_bytes({"vertex": table_of(columns)}, [WRITTEN, f"kind: {KINDS}"]))

@@ -148,7 +148,7 @@ def _isolated(
         return None
     some = isolate(drawn, at)
     raw = some.removed >= params.isolation.raw_from and some.target.mean() >= LEAST_LEFT
-    return Scene.of(cloud, known).tree_at(some.base) if raw or wanted == "always" else None
+    return drawn.over(cloud).tree_at(some.base) if raw or wanted == "always" else None
 
 
 LEAST_LEFT = 0.02

@@ -9,7 +9,7 @@ pytest.importorskip("torch")
 pytest.importorskip("onnx")
 
 from prunus.io.scans import read_scan
-from prunus.learn import isolation
+from prunus.learn import examples, isolation
 from prunus.learn.isolation import (
     RowExample,
     kept_and_removed,
@@ -72,7 +72,7 @@ def test_turns_are_small_or_half_round_and_keep_lengths(rng: np.random.Generator
 def test_a_folder_of_scans_gives_a_network_that_tells_kinds(
     orchard: Path, tmp_path: Path, example: RowExample, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(isolation, "POINTS", (10_000, 20_000))
+    monkeypatch.setattr(examples, "POINTS", (10_000, 20_000))
     weights = tmp_path / "mine.onnx"
     report = isolation_school(orchard, weights, 0, 3, 1, lambda items, name, total: items)
     assert report["trees"] == [4, 1]

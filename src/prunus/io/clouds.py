@@ -130,11 +130,20 @@ def _check_metres(xyz: Floats, path: Path) -> None:
     )
 
 
-def _ply(xyz: Floats, rgb: Bytes | None) -> bytes:
+WRITTEN = "written by prunus; unit: metre"
+"""What the PLY files of clouds say of themselves."""
+
+
+def columns_of(xyz: Floats, rgb: Bytes | None) -> dict[str, Any]:
+    """Points (P, 3), and their colours (P, 3) where they have any, as the columns of a PLY."""
     columns: dict[str, Any] = {name: xyz[:, axis] for axis, name in enumerate("xyz")}
     if rgb is not None:
         columns |= {name: rgb[:, c] for c, name in enumerate(("red", "green", "blue"))}
-    return ply_bytes({"vertex": table_of(columns)}, ["written by prunus; unit: metre"])
+    return columns
+
+
+def _ply(xyz: Floats, rgb: Bytes | None) -> bytes:
+    return ply_bytes({"vertex": table_of(columns_of(xyz, rgb))}, [WRITTEN])
 
 
 def _text(delimiter: str) -> Callable[[Floats, Bytes | None], bytes]:

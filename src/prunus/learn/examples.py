@@ -8,12 +8,13 @@ it; the edges of each graph are seen again in another draw of the cloud, 20 000 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,8 @@ from prunus.stages.candidates import find_candidates
 from prunus.stages.context import Context, Inputs, context_of, description
 from prunus.stages.images import edge_images
 from prunus.stages.superpoints import find_superpoints
+
+Made = TypeVar("Made")
 
 POINTS = (20_000, 100_000)
 """Clouds hold between so many points."""
@@ -73,7 +76,11 @@ def split_by_tree(folders: list[Path], rng: np.random.Generator) -> list[list[Pa
 
 def examples_of(folders: list[Path], seed: int, jobs: int, cover: Cover) -> Iterator[list[Example]]:
     """The examples of each scan, in order; superpoints as the network will meet them."""
-    make = partial(examples_in, seed=seed, cover=cover)
+    yield from by_scan(partial(examples_in, seed=seed, cover=cover), folders, jobs)
+
+
+def by_scan(make: Callable[[Path], Made], folders: list[Path], jobs: int) -> Iterator[Made]:
+    """What is made of each scan, in order, several at a time."""
     if jobs == 1:
         yield from map(make, folders)
         return
@@ -107,15 +114,16 @@ def _examples(
     if len(seen) < 1000:
         return
     cloud = PointCloud.from_xyz(seen)
-    graph = find_candidates(find_superpoints(_drawn(cloud, rng), cover, rng))
+    graph = find_candidates(find_superpoints(drawn(cloud, rng), cover, rng))
     if len(graph.edges) < 10:
         return
     category = edge_labels(cloud.to_input.apply(graph.xyz), graph.edges, wood)
     yield example_of(graph, category)
-    yield example_of(_seen_again(graph, _drawn(cloud, rng)), category)
+    yield example_of(_seen_again(graph, drawn(cloud, rng)), category)
 
 
-def _drawn(cloud: PointCloud, rng: np.random.Generator) -> PointCloud:
+def drawn(cloud: PointCloud, rng: np.random.Generator) -> PointCloud:
+    """Points drawn at random, so many as clouds may hold."""
     low, high = (math.log(points) for points in POINTS)
     return cloud.sample(round(math.exp(rng.uniform(low, high))), rng)
 

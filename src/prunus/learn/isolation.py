@@ -11,10 +11,8 @@ import io
 import math
 import warnings
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +22,7 @@ from torch import Tensor, nn
 
 from prunus.io.scans import ScannedTree, read_scan
 from prunus.kernels.neighbours import nearest, within
-from prunus.learn.examples import POINTS
+from prunus.learn.examples import VIEWS, by_scan, drawn
 from prunus.measure import branches
 from prunus.model import Floats, Ints, Kind, Label, PointCloud, Skeleton
 from prunus.params import Parameters
@@ -33,13 +31,8 @@ from prunus.sensing.surroundings import LINK_FEATURES, NODE_FEATURES, Pieces, Su
 
 GRAPHS = 2
 """Draws of points from each scan."""
-VIEWS: tuple[tuple[Kind, ...], ...] = (
-    tuple(Kind),
-    (Kind.TARGET, Kind.STRAY),
-    (Kind.TARGET, Kind.WIRE, Kind.NEIGHBOUR, Kind.STRAY),
-)
 SHARES = (0.7, 0.2, 0.1)
-"""What of a scan is in the cloud: all; the target alone; what a rough removal leaves."""
+"""How often the further draws are of each of `VIEWS`; the first is of all that was scanned."""
 SEEN = 0.03
 """A trunk is seen where a point of it is within so many metres."""
 FEWEST = 1000
@@ -83,12 +76,7 @@ class RowExample:
 
 def row_examples(folders: list[Path], seed: int, jobs: int) -> Iterator[list[RowExample]]:
     """The examples of each scan, in order."""
-    make = partial(row_examples_in, seed=seed)
-    if jobs == 1:
-        yield from map(make, folders)
-        return
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        yield from pool.map(make, folders)
+    yield from by_scan(partial(row_examples_in, seed=seed), folders, jobs)
 
 
 def row_examples_in(folder: Path, seed: int) -> list[RowExample]:
@@ -103,8 +91,7 @@ def row_example(scan: ScannedTree, kinds: tuple[Kind, ...], rng: np.random.Gener
     """The superpoints of what a scan holds of some kinds."""
     held = np.isin(scan.kind, kinds)
     cloud = PointCloud.from_xyz(scan.xyz[held])
-    drawn = cloud.sample(round(math.exp(rng.uniform(*np.log(POINTS)))), rng)
-    pieces = Pieces.of(judged_graph(drawn, Parameters(), rng))
+    pieces = Pieces.of(judged_graph(drawn(cloud, rng), Parameters(), rng))
     to_house = cloud.to_input.inverse()
     owner = nearest(cloud.xyz, pieces.xyz, NODE_REACH)
     trees = len(scan.trees)
@@ -242,7 +229,10 @@ def kept_and_removed(net: IsolationNet, examples: list[RowExample]) -> tuple[flo
         kept = found == Kind.TARGET
         removed = others[~kept].sum() / others.sum()
         shares.append((counts[kept, 0].sum() / counts[:, 0].sum(), removed))
-    return tuple(np.nanmean(shares, axis=0).tolist())
+    if not shares:
+        return math.nan, math.nan
+    kept_share, removed_share = np.mean(shares, axis=0).tolist()
+    return kept_share, removed_share
 
 
 def isolation_bytes(net: IsolationNet, example: RowExample) -> bytes:

@@ -6,7 +6,7 @@ of one tree, and tells what it is to that tree; the points are what their superp
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -90,6 +90,10 @@ class Scene:
         """The scene of a cloud, from all candidate edges of points drawn from it."""
         owner = nearest(cloud.xyz, graph.xyz, NODE_REACH)
         return cls(cloud, Pieces.of(graph), owner, find_trunks(graph))
+
+    def over(self, cloud: PointCloud) -> Scene:
+        """The same scene with the points of all that was scanned."""
+        return replace(self, cloud=cloud, owner=nearest(cloud.xyz, self.pieces.xyz, NODE_REACH))
 
     @cached_property
     def trees(self) -> list[Isolated]:
