@@ -23,6 +23,7 @@ from prunus.params import Parameters
 from prunus.pipeline import Result, skeletonize
 from prunus.sensing.isolate import isolate, look_at
 from prunus.sensing.level import find_turn
+from prunus.sensing.orient import local_wood
 from prunus.simulate.scan import simulate_scan
 
 THINGS = (Kind.POST, Kind.WIRE)
@@ -39,7 +40,7 @@ def measured(seed: int) -> Record:
     target, things = scan.kind == Kind.TARGET, np.isin(scan.kind, THINGS)
     clean = PointCloud.from_xyz(scan.xyz[target])
     alone = isolate(look_at(clean, Parameters(), np.random.default_rng(0)), None)
-    turn, _ = find_turn(scan.xyz, np.random.default_rng(0))
+    turn, _ = find_turn(scan.xyz, local_wood(scan.xyz), np.random.default_rng(0))
     tree = tree_of(seed)
     base = tree.truth.xyz[0]
     record = {

@@ -12,7 +12,7 @@ from prunus.io.clouds import FileCloud
 from prunus.io.clouds import read_cloud as read_file
 from prunus.model import FRAMES, PointCloud
 from prunus.sensing.level import find_turn
-from prunus.sensing.orient import find_frame
+from prunus.sensing.orient import find_frame, local_wood
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,12 +34,15 @@ def open_scan(path: str | Path, frame: str = "auto", unit: str | None = None) ->
         raise PrunusError(f"unknown frame {frame!r}; expected auto, {', '.join(FRAMES)}")
     file = read_file(path, unit)
     notes = list(file.notes)
-    seems, why = find_frame(file.xyz)
+    wood = local_wood(file.xyz)
+    seems, why = find_frame(wood)
     turn = None
     if frame == "auto":
         frame = seems
         notes.append(f"frame {frame}: {why}")
-        turn, turned = find_turn(file.xyz @ FRAMES[frame].T, np.random.default_rng(0))
+        to_house = FRAMES[frame]
+        in_house = file.xyz @ to_house.T
+        turn, turned = find_turn(in_house, wood.turned(to_house), np.random.default_rng(0))
         notes += turned
     elif seems != frame and not why.startswith("undecided"):
         notes.append(f"frame {frame} as asked, but the cloud looks like {seems}: {why}")

@@ -7,6 +7,7 @@ import pytest
 
 from prunus.model import Floats
 from prunus.sensing.level import ASKEW, find_turn, ground_normal, row_angle, upright
+from prunus.sensing.orient import local_wood
 from prunus.simulate.scan import simulate_scan
 
 
@@ -31,7 +32,8 @@ def field(rng: np.random.Generator) -> Floats:
 
 @pytest.mark.parametrize("tilt", [-12.0, 8.0])
 def test_a_tilted_scan_is_levelled_by_its_ground(tilt: float, rng: np.random.Generator) -> None:
-    turn, notes = find_turn(field(rng) @ about_x(tilt).T, rng)
+    xyz = field(rng) @ about_x(tilt).T
+    turn, notes = find_turn(xyz, local_wood(xyz), rng)
     up = turn @ about_x(tilt) @ [0, 0, 1]
     assert math.degrees(math.acos(min(1.0, up[2]))) < 2
     assert notes and notes[0].startswith("levelled by")
@@ -39,7 +41,8 @@ def test_a_tilted_scan_is_levelled_by_its_ground(tilt: float, rng: np.random.Gen
 
 @pytest.mark.parametrize("askew", [-30.0, 20.0])
 def test_a_scan_askew_is_turned_to_its_row(askew: float, rng: np.random.Generator) -> None:
-    turn, notes = find_turn(field(rng) @ about_z(askew).T, rng)
+    xyz = field(rng) @ about_z(askew).T
+    turn, notes = find_turn(xyz, local_wood(xyz), rng)
     along = turn @ about_z(askew) @ [1, 0, 0]
     assert abs(math.degrees(math.atan2(along[1], along[0]))) < 5
     assert any("to the row" in note for note in notes)
@@ -47,7 +50,8 @@ def test_a_scan_askew_is_turned_to_its_row(askew: float, rng: np.random.Generato
 
 @pytest.mark.parametrize("seed", range(500_000, 500_004))
 def test_a_level_row_stays_as_it_is(seed: int, rng: np.random.Generator) -> None:
-    turn, notes = find_turn(simulate_scan(seed).xyz, rng)
+    xyz = simulate_scan(seed).xyz
+    turn, notes = find_turn(xyz, local_wood(xyz), rng)
     assert np.array_equal(turn, np.eye(3))
     assert notes == []
 
@@ -56,7 +60,7 @@ def test_no_ground_and_no_wood_say_nothing(rng: np.random.Generator) -> None:
     ball = rng.normal(0, 0.3, (3000, 3))
     assert ground_normal(ball, rng) is None
     assert ground_normal(np.zeros((1, 3)), rng) is None
-    angle, share = row_angle(ball)
+    angle, share = row_angle(local_wood(ball))
     assert share < 0.6 or abs(angle) < math.radians(ASKEW)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from prunus.model import FRAMES
-from prunus.sensing.orient import find_frame
+from prunus.sensing.orient import find_frame, local_wood
 from tests.conftest import simulated
 
 
@@ -12,16 +12,16 @@ from tests.conftest import simulated
 @pytest.mark.parametrize("frame", sorted(FRAMES))
 def test_simulated_scans_are_told_right(seed: int, frame: str) -> None:
     _, cloud = simulated(seed)
-    found, why = find_frame(cloud.xyz @ FRAMES[frame])
+    found, why = find_frame(local_wood(cloud.xyz @ FRAMES[frame]))
     assert found == frame
     assert "most wood runs along" in why
 
 
 def test_a_ball_is_undecided_and_said_so(rng: np.random.Generator) -> None:
-    found, why = find_frame(rng.normal(size=(4000, 3)))
+    found, why = find_frame(local_wood(rng.normal(size=(4000, 3))))
     assert found == "z-up"
     assert why.startswith("undecided")
 
 
 def test_one_point_does_not_break_it() -> None:
-    assert find_frame(np.zeros((1, 3)))[0] == "z-up"
+    assert find_frame(local_wood(np.zeros((1, 3))))[0] == "z-up"

@@ -26,6 +26,12 @@ def frozen(values: ArrayLike, dtype: Any, shape: tuple[int | None, ...]) -> NDAr
     return array
 
 
+def cubes(xyz: Floats, side: float) -> Ints:
+    """A number (P,) for the cube of that side, metres, in which each point (P, 3) lies."""
+    place = np.floor((xyz - xyz.min(axis=0)) / side).astype(np.int64)
+    return np.asarray((place[:, 0] << 42) | (place[:, 1] << 21) | place[:, 2])
+
+
 def snapped(xyz: Floats) -> Floats:
     """Coordinates rounded to `GRID`.
 

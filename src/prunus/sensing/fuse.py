@@ -13,7 +13,7 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.model import Floats, Ints, RigidMotion, RigView
-from prunus.model.arrays import Bytes
+from prunus.model.arrays import Bytes, cubes
 from prunus.sensing.register import MOVED, TURNED, Fit, fit_of, refined, turn_of
 from prunus.sensing.threads import Threads, threads_of
 from prunus.sensing.views import Seen, seen
@@ -172,6 +172,4 @@ def _median(values: Floats) -> float:
 def _one_each(xyz: Floats, rng: np.random.Generator) -> Ints:
     """Rows of xyz (P, 3): one, drawn at random, in each cube of side `VOXEL`."""
     order = rng.permutation(len(xyz))
-    cells = np.floor((xyz[order] - xyz.min(axis=0)) / VOXEL).astype(np.int64)
-    cube = (cells[:, 0] << 42) | (cells[:, 1] << 21) | cells[:, 2]
-    return np.sort(order[np.unique(cube, return_index=True)[1]])
+    return np.sort(order[np.unique(cubes(xyz[order], VOXEL), return_index=True)[1]])

@@ -11,7 +11,8 @@ import math
 import numpy as np
 
 from prunus.model import Floats
-from prunus.sensing.orient import local_wood
+from prunus.model.arrays import cubes
+from prunus.sensing.orient import Wood
 
 TILTS = (4.0, 25.0)
 """The ground is followed when it is tilted by so many degrees, at least and at most."""
@@ -39,8 +40,11 @@ ALIKE = 0.6
 """So large a share of the level wood runs along the row, or it is not trusted."""
 
 
-def find_turn(xyz: Floats, rng: np.random.Generator) -> tuple[Floats, list[str]]:
-    """The rotation (3, 3) that sets points (P, 3) of a named house frame right; what was turned."""
+def find_turn(xyz: Floats, wood: Wood, rng: np.random.Generator) -> tuple[Floats, list[str]]:
+    """The rotation (3, 3) that sets a scan in a named house frame right; what was turned.
+
+    xyz (P, 3) are its points, and `wood` its local wood, in that frame.
+    """
     turn, notes = np.eye(3), list[str]()
     xyz = xyz[:: max(1, len(xyz) // LOOKED_AT)]
     up = ground_normal(xyz, rng)
@@ -48,7 +52,7 @@ def find_turn(xyz: Floats, rng: np.random.Generator) -> tuple[Floats, list[str]]
     if up is not None and TILTS[0] <= tilt <= TILTS[1]:
         turn = upright(up)
         notes.append(f"levelled by {tilt:.0f} degrees: so far the ground is tilted")
-    angle, share = row_angle(xyz @ turn.T)
+    angle, share = row_angle(wood.turned(turn))
     if abs(math.degrees(angle)) >= ASKEW and share >= ALIKE:
         c, s = math.cos(angle), math.sin(angle)
         turn = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) @ turn
@@ -85,9 +89,7 @@ def ground_normal(xyz: Floats, rng: np.random.Generator) -> Floats | None:
 
 def lowest(xyz: Floats) -> Floats:
     """The lowest point of each square of the ground plan; points almost alone are strays."""
-    place = np.floor((xyz - xyz.min(axis=0)) / CUBE).astype(np.int64)
-    key = (place[:, 0] << 42) | (place[:, 1] << 21) | place[:, 2]
-    _, cube, held = np.unique(key, return_inverse=True, return_counts=True)
+    _, cube, held = np.unique(cubes(xyz, CUBE), return_inverse=True, return_counts=True)
     xyz = xyz[held[cube] >= ALONE]
     square = np.floor(xyz[:, :2] / SQUARE).astype(np.int64)
     order = np.lexsort([xyz[:, 2], square[:, 1], square[:, 0]])
@@ -96,11 +98,10 @@ def lowest(xyz: Floats) -> Floats:
     return np.asarray(xyz[order[first]])
 
 
-def row_angle(xyz: Floats) -> tuple[float, float]:
+def row_angle(wood: Wood) -> tuple[float, float]:
     """The angle of the row about Z, from X, radians; the share of the level wood that runs so."""
-    linear, directions = local_wood(xyz)
-    weight = linear * (np.abs(directions[:, 2]) < LEVEL)
-    angles = np.arctan2(directions[:, 1], directions[:, 0])
+    weight = wood.linear * (np.abs(wood.directions[:, 2]) < LEVEL)
+    angles = np.arctan2(wood.directions[:, 1], wood.directions[:, 0])
     if weight.sum() <= 0:
         return 0.0, 0.0
     tried = np.radians(np.arange(-90, 90))

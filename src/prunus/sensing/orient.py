@@ -6,6 +6,8 @@ run is the vertical one: Z in a `z-up` cloud, Y in an `optical` one. (X is along
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from prunus.kernels.neighbours import within
@@ -21,12 +23,29 @@ NEEDED = 1.5
 """One axis must hold this many times as much wood as the other before the evidence counts."""
 
 
-def find_frame(xyz: Floats) -> tuple[str, str]:
+@dataclass(frozen=True, eq=False)
+class Wood:
+    """Local pieces of wood: how much each is a line (C,), 0 to 1, and its direction (C, 3)."""
+
+    linear: Floats
+    directions: Floats
+
+    def turned(self, rotation: Floats) -> Wood:
+        """The same wood in another frame."""
+        return Wood(self.linear, self.directions @ rotation.T)
+
+    def along_axes(self) -> Floats:
+        """Share (3,) of the wood that runs along each axis."""
+        along = (self.linear[:, None] * self.directions**2).sum(axis=0)
+        return np.asarray(along / max(along.sum(), 1e-12))
+
+
+def find_frame(wood: Wood) -> tuple[str, str]:
     """The name of the frame, and a line that says why.
 
     Clouds without a decision are taken as `z-up`, and the line begins with `undecided`.
     """
-    _, along_y, along_z = wood_along_axes(xyz - xyz[0])
+    _, along_y, along_z = wood.along_axes()
     if along_y > NEEDED * along_z:
         return "optical", f"most wood runs along Y ({along_y:.0%}), little along Z ({along_z:.0%})"
     if along_z > NEEDED * along_y:
@@ -37,19 +56,9 @@ def find_frame(xyz: Floats) -> tuple[str, str]:
     )
 
 
-def wood_along_axes(points: Floats) -> Floats:
-    """Share (3,) of the local linear structure that runs along each axis."""
-    linear, directions = local_wood(points)
-    along = (linear[:, None] * directions**2).sum(axis=0)
-    return np.asarray(along / max(along.sum(), 1e-12))
-
-
-def local_wood(points: Floats) -> tuple[Floats, Floats]:
-    """How much `PATCHES` local pieces of wood are lines (C,), 0 to 1, and their directions (C, 3).
-
-    Of at most `LOOKED_AT` points.
-    """
-    points = points[:: max(1, len(points) // LOOKED_AT)]
+def local_wood(xyz: Floats) -> Wood:
+    """The wood around `PATCHES` of at most `LOOKED_AT` of the points (P, 3)."""
+    points = xyz[:: max(1, len(xyz) // LOOKED_AT)] - xyz[0]
     centers = points[:: max(1, len(points) // PATCHES)]
     start, members = within(points, centers, PATCH)
     sizes = np.diff(start)
@@ -64,4 +73,4 @@ def local_wood(points: Floats) -> tuple[Floats, Floats]:
             moments[:, i, j] = np.bincount(patch, products, len(centers)) / sizes
     spread, directions = np.linalg.eigh(moments - mean[:, :, None] * mean[:, None, :])
     linear = (spread[:, 2] - spread[:, 1]) / np.maximum(spread[:, 2], 1e-12)
-    return np.asarray(linear), np.asarray(directions[:, :, 2])
+    return Wood(np.asarray(linear), np.asarray(directions[:, :, 2]))

@@ -14,6 +14,7 @@ import numpy as np
 
 from prunus.kernels.depth import GROUND, NOTHING, draw_ground, draw_wood, points_of
 from prunus.model import Bools, Floats, Ints, Kind, Label, PointCloud, RigidMotion, Skeleton
+from prunus.model.arrays import cubes
 from prunus.simulate.row import NONE, Pieces, Row, plant_row
 from prunus.simulate.settings import RigSettings, ScanSettings, Setting, scan_settings
 from prunus.simulate.stereo import focal_length, hold_of, matched
@@ -186,6 +187,5 @@ def _labelled(
 def _thinned(rng: np.random.Generator, xyz: Floats, voxel: float) -> Ints:
     """One point of each cube, drawn at random: rows of `xyz` (P, 3)."""
     order = rng.permutation(len(xyz))
-    cell = ((xyz[order] - xyz.min(axis=0)) / voxel).astype(np.int64)
-    _, first = np.unique((cell[:, 0] << 42) | (cell[:, 1] << 21) | cell[:, 2], return_index=True)
+    _, first = np.unique(cubes(xyz[order], voxel), return_index=True)
     return np.asarray(order[first])
