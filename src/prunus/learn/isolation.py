@@ -7,14 +7,11 @@ trunk the scan holds is asked for in turn, and its neighbours are what they are 
 
 from __future__ import annotations
 
-import io
 import math
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import torch
@@ -23,6 +20,7 @@ from torch import Tensor, nn
 from prunus.io.scans import ScannedTree, read_scan
 from prunus.kernels.neighbours import nearest, within
 from prunus.learn.examples import VIEWS, by_scan, drawn
+from prunus.learn.train import exported
 from prunus.measure import branches
 from prunus.model import Floats, Ints, Kind, Label, PointCloud, Skeleton
 from prunus.params import Parameters
@@ -237,19 +235,8 @@ def kept_and_removed(net: IsolationNet, examples: list[RowExample]) -> tuple[flo
 
 def isolation_bytes(net: IsolationNet, example: RowExample) -> bytes:
     """The network as an ONNX file that gives probabilities, for any number of superpoints."""
-    held: Any = io.BytesIO()
-    names = ["node", "near", "link"]
-    axes = {one: {0: "superpoints"} for one in [*names, "kind"]}
     inputs = tensors_of(example.pieces.seen_from(example.pieces.xyz[0]))
-    with warnings.catch_warnings():
-        # The older exporter warns that there is a newer one, which needs one more package.
-        warnings.simplefilter("ignore")
-        torch.onnx.export(
-            Probable(net).eval(),
-            inputs, held, input_names=names, output_names=["kind"],
-            dynamic_axes=axes, opset_version=18, dynamo=False,
-        )  # fmt: skip
-    return bytes(held.getvalue())
+    return exported(Probable(net), inputs, ("node", "near", "link"), ("kind",), "superpoints")
 
 
 class Probable(nn.Module):

@@ -239,15 +239,24 @@ def onnx_bytes(
 ) -> bytes:
     """The network as an ONNX file, for any number of edges."""
     inputs, _ = recipe.seen(example)
-    net.eval()
+    return exported(net, inputs, INPUTS[name], ("confidence", "category"), "edges")
+
+
+def exported(
+    net: nn.Module,
+    inputs: tuple[Tensor, ...],
+    names: tuple[str, ...],
+    outputs: tuple[str, ...],
+    counted: str,
+) -> bytes:
+    """A network as an ONNX file, for any number of what its inputs and outputs count first."""
     held: Any = io.BytesIO()
-    names = list(INPUTS[name])
-    axes = {one: {0: "edges"} for one in [*names, "confidence", "category"]}
     with warnings.catch_warnings():
         # The older exporter warns that there is a newer one, which needs one more package.
         warnings.simplefilter("ignore")
         torch.onnx.export(
-            net, inputs, held, input_names=names, output_names=["confidence", "category"],
-            dynamic_axes=axes, opset_version=18, dynamo=False,
+            net.eval(), inputs, held, input_names=list(names), output_names=list(outputs),
+            dynamic_axes={one: {0: counted} for one in (*names, *outputs)},
+            opset_version=18, dynamo=False,
         )  # fmt: skip
     return bytes(held.getvalue())
