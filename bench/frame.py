@@ -12,9 +12,9 @@ import math
 import numpy as np
 
 from prunus.model import Floats
+from prunus.model.rotations import turned
 from prunus.sensing.level import find_turn
 from prunus.sensing.orient import local_wood
-from prunus.sensing.register import turned
 from prunus.simulate.scan import simulate_scan
 
 ABOUT = (15.0, 8.0, 25.0)

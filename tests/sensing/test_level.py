@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from prunus.model import Floats
-from prunus.sensing.level import ASKEW, find_turn, ground_normal, row_angle, upright
+from prunus.model.rotations import upright
+from prunus.sensing.level import ASKEW, find_turn, ground_normal, row_angle
 from prunus.sensing.orient import local_wood
 from prunus.simulate.scan import simulate_scan
 

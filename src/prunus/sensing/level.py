@@ -12,6 +12,7 @@ import numpy as np
 
 from prunus.model import Floats
 from prunus.model.arrays import cubes
+from prunus.model.rotations import turned, upright
 from prunus.sensing.orient import Wood
 
 STEEPEST = 25.0
@@ -59,8 +60,7 @@ def find_turn(xyz: Floats, wood: Wood, rng: np.random.Generator) -> tuple[Floats
         notes.append(f"levelled by {tilt:.0f} degrees: so far the ground is tilted")
     angle, share = row_angle(wood.turned(turn))
     if abs(math.degrees(angle)) >= ASKEW and share >= ALIKE:
-        c, s = math.cos(angle), math.sin(angle)
-        turn = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) @ turn
+        turn = turned(np.array([0.0, 0.0, -angle])) @ turn
         notes.append(f"turned by {math.degrees(angle):.0f} degrees about Z, to the row")
     return turn, notes
 
@@ -130,14 +130,3 @@ def _between(angles: Floats, other: Floats | float) -> Floats:
 
 def _beside(angles: Floats, other: Floats | float) -> Floats:
     return np.asarray(np.exp(-0.5 * (_between(angles, other) / BESIDE) ** 2))
-
-
-def upright(up: Floats) -> Floats:
-    """The least rotation (3, 3) that turns a direction (3,) to Z."""
-    axis = np.array([up[1], -up[0], 0.0])
-    sine = float(np.linalg.norm(axis))
-    if sine < 1e-12:
-        return np.eye(3)
-    x, y, z = axis / sine
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.asarray(np.eye(3) + sine * cross + (1 - up[2]) * cross @ cross)
