@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,23 +22,36 @@ Record = dict[str, Any]
 def pairs_in(skeletons: Path, gold: Path) -> list[tuple[str, Path, Path]]:
     """Name, skeleton and gold standard of each pair; in folders those of the same name.
 
-    A file has its own name, and `NAME/skeleton.json` or `NAME/truth.json` that of its folder.
+    A file has its own name, and `NAME/skeleton.json` or `NAME/truth.json` that of its folder. A
+    gold standard is what a person corrected, where there is any: `NAME/corrected.json`.
     Raises PrunusError where a gold standard has no skeleton, or there is none.
     """
     if not skeletons.is_dir() and not gold.is_dir():
         return [(str(skeletons), skeletons, gold)]
     if skeletons.is_dir() != gold.is_dir():
         raise PrunusError(f"{skeletons} and {gold}: expected two files or two folders")
-    ours, theirs = _named(skeletons, "skeleton"), _named(gold, "truth", "gold", "skeleton")
+    ours, theirs = _named(skeletons, "skeleton"), _gold_in(gold)
     if not theirs:
         raise PrunusError(
-            f"{gold}: no gold standard in it; expected NAME/truth.json, or NAME with one of "
-            f"{' '.join(sorted(READERS))}"
+            f"{gold}: no gold standard in it; expected NAME/corrected.json, NAME/truth.json, or "
+            f"NAME with one of {' '.join(sorted(READERS))}"
         )
     missing = sorted(set(theirs) - set(ours))
     if missing:
         raise PrunusError(f"{skeletons}: no skeleton {missing[0]!r}, which {gold} has")
     return [(name, ours[name], theirs[name]) for name in sorted(theirs)]
+
+
+def _gold_in(folder: Path) -> dict[str, Path]:
+    """The gold standards in a folder by name.
+
+    Beside trees that were corrected, one that was not has no gold standard: the machine's own
+    skeleton would be right by definition.
+    """
+    named = _named(folder, "corrected", "truth", "gold", "skeleton")
+    if not any(path.name == "corrected.json" for path in named.values()):
+        return named
+    return {name: path for name, path in named.items() if path.name != "skeleton.json"}
 
 
 def _named(folder: Path, *stems: str) -> dict[str, Path]:
@@ -62,7 +76,7 @@ def compare(name: str, predicted: Path, gold: Path) -> Record:
         return {"name": name, "labels": False, **measures}
     record: Record = {"name": name, "labels": True}
     if _same_superpoints(ours, theirs):
-        needed = edits(ours, theirs)
+        needed = edits(_numbered(ours, 1), _numbered(theirs, 2))
         record |= {"edit_ratio": needed.ratio, "wrong": needed.wrong, "missing": needed.missing,
                    "mislabelled": needed.mislabelled, "edges": needed.edges}  # fmt: skip
         ratios = label_ratios([needed])
@@ -84,10 +98,20 @@ def _labelled(path: Path) -> Skeleton | None:
 
 def _same_superpoints(one: Skeleton, other: Skeleton) -> bool:
     """Whether two skeletons share superpoints: where a number stands in both, so does the place."""
-    if (one.superpoint < 0).any() or (other.superpoint < 0).any():
-        return False
     _, mine, theirs = np.intersect1d(one.superpoint, other.superpoint, return_indices=True)
+    known = one.superpoint[mine] >= 0
+    mine, theirs = mine[known], theirs[known]
     return len(mine) > 0 and bool(np.allclose(one.xyz[mine], other.xyz[theirs], atol=1e-4))
+
+
+def _numbered(skeleton: Skeleton, whose: int) -> Skeleton:
+    """The skeleton with numbers of their own for points that a person added: no superpoints."""
+    own = whose * NUMBERS + np.arange(len(skeleton))
+    return replace(skeleton, superpoint=np.where(skeleton.superpoint < 0, own, skeleton.superpoint))
+
+
+NUMBERS = 2**40
+"""More than there are superpoints."""
 
 
 def spread_lines(records: list[Record]) -> list[str]:

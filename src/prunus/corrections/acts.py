@@ -76,6 +76,13 @@ class MoveBase(Checked):
     place: Place
 
 
+@dataclass(frozen=True)
+class PickBase(Checked):
+    """The next `Rebuild` starts at this place; the skeleton stays as it is until then."""
+
+    place: Place
+
+
 Step = AddPath | RemoveEdge | RemoveBranch | Relabel | Reattach | MoveBase
 """An act on the skeleton alone."""
 STEPS: tuple[type[Step], ...] = (
@@ -113,6 +120,7 @@ class Mark(Checked):
 class Rebuild(Checked):
     """The chain again on the points marked as the target, from the base where one was picked.
 
+    Where nothing was marked by hand, a raw scan is taken apart anew, for the tree at that base.
     The acts on the skeleton before it are superseded.
     """
 
@@ -129,13 +137,16 @@ class SetStatus(Checked):
     done: bool
 
 
-Act = Step | Together | Mark | Rebuild | Search | SetStatus
-ACTS: tuple[type[Act], ...] = (*STEPS, Together, Mark, Rebuild, Search, SetStatus)
+Act = Step | Together | PickBase | Mark | Rebuild | Search | SetStatus
+ACTS: tuple[type[Act], ...] = (*STEPS, Together, PickBase, Mark, Rebuild, Search, SetStatus)
 
 
 def to_json(act: Act) -> dict[str, Any]:
-    """The act as an object of JSON."""
-    return told(act, "act")
+    """The act as an object of JSON; PrunusError where a field is of a wrong type."""
+    try:
+        return told(act, "act")
+    except ValueError as error:
+        raise PrunusError(str(error)) from error
 
 
 def from_json(values: Any) -> Act:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import getpass
 import json
 import os
@@ -91,8 +92,9 @@ def _created(path: Path) -> bool:
     temporary = path.with_name(f".{NAME}.{os.getpid()}.{os.urandom(4).hex()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        temporary.write_text(json.dumps(asdict(Holder.me())) + "\n", encoding="utf-8")
-        os.link(temporary, path)
+        text = json.dumps(asdict(Holder.me())) + "\n"
+        temporary.write_text(text, encoding="utf-8")
+        _link(temporary, path, text)
     except FileExistsError:
         return False
     except OSError as error:
@@ -101,6 +103,19 @@ def _created(path: Path) -> bool:
         with contextlib.suppress(OSError):
             temporary.unlink()
     return True
+
+
+def _link(temporary: Path, path: Path, text: str) -> None:
+    """Give a file a second name that must be free, or write it where a disk knows no such names."""
+    try:
+        os.link(temporary, path)
+    except FileExistsError:
+        raise
+    except OSError as error:
+        if error.errno not in (errno.EPERM, errno.ENOTSUP, errno.ENOSYS):
+            raise
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
 
 
 def _clear(path: Path, stale: bytes) -> None:

@@ -26,19 +26,23 @@ from prunus.rules import offenders
 
 MOST = 5
 """So many repairs are offered."""
-LARGE = 0.5
-"""A repair that would touch a larger share of the tree is none."""
+MOST_STEPS = 4
+"""A repair that takes more than so many further acts is none."""
 
 Offer = tuple[str, Step | Together]
 
 
 def tried(draft: Draft, act: Step | Together, graph: SeededGraph) -> Draft | None:
     """The draft after an act; None where it cannot be done."""
+    done = _done(draft, act, graph)
+    return None if done is None or offenders(done.skeleton()) else done
+
+
+def _done(draft: Draft, act: Step | Together, graph: SeededGraph) -> Draft | None:
     try:
-        done = stepped(draft, act, graph).draft
+        return stepped(draft, act, graph).draft
     except PrunusError:
         return None
-    return None if offenders(done.skeleton()) else done
 
 
 def repairs(
@@ -97,24 +101,26 @@ def _other_paths(draft: Draft, act: AddPath, names: dict[int, str]) -> Iterator[
 def _settling(
     draft: Draft, act: Step | Together, wrong: Stepped, graph: SeededGraph, names: dict[int, str]
 ) -> Iterator[Offer]:
-    """The act as it is, and as little as possible of the rest relabelled, or taken away."""
-    ways = [(True, False), (False, True)]
-    found = [_settled(wrong, relabel, remove) for relabel, remove in ways]
-    if not any(found):
-        found = [_settled(wrong, True, True)]
-    for right in found:
+    """The act as it is, and as little as possible of the rest relabelled, or taken away.
+
+    At first what hangs beyond its place is relabelled, then the rest of the tree.
+    """
+    now = wrong.draft
+    placed = [node for node in now.nodes[1:] if draft.into.get(node) != now.into[node]]
+    further = {one for node in placed for one in now.beyond(node)}
+    before = set(now.nodes) - further
+    for kept, relabel, remove in (
+        (before, True, False),
+        (set[int](), True, False),
+        (before, True, True),
+        (set[int](), False, True),
+    ):
+        right = settled(now, Allowed(kept | wrong.touched, relabel, remove, placed))
         if right is not None:
-            steps = _between(wrong.draft, right, graph)
+            steps = _between(now, right, graph)
             first = act.acts if isinstance(act, Together) else (act,)
-            yield _told(wrong.draft, right, names), Together((*first, *steps))
-
-
-def _settled(wrong: Stepped, relabel: bool, remove: bool) -> Draft | None:
-    right = settled(wrong.draft, Allowed(wrong.touched, relabel, remove))
-    if right is None:
-        return None
-    changed = [n for n, edge in wrong.draft.into.items() if right.into.get(n) != edge]
-    return right if len(changed) <= LARGE * len(wrong.draft.into) else None
+            if len(steps) <= MOST_STEPS:
+                yield _told(now, right, names), Together((*first, *steps))
 
 
 def _between(wrong: Draft, right: Draft, graph: SeededGraph) -> list[Step]:
@@ -124,8 +130,8 @@ def _between(wrong: Draft, right: Draft, graph: SeededGraph) -> list[Step]:
     changed = {n: right.into[n][1] for n in wrong.nodes[1:]
                if n in right and right.into[n][1] != wrong.into[n][1]}  # fmt: skip
     short = [*removed, *_runs(wrong, changed)]
-    done = stepped(wrong, Together(tuple(short)), graph).draft
-    if _same(done, right):
+    done = _done(wrong, Together(tuple(short)), graph)
+    if done is not None and _same(done, right):
         return short
     return [*removed, *(Relabel(node, label) for node, label in changed.items())]
 

@@ -27,16 +27,20 @@ Found = dict[Label | None, tuple[float, Chosen | None]]
 
 @dataclass(frozen=True)
 class Allowed:
-    """What may change: labels, and whether wood may be taken away; never edges into `kept`."""
+    """What may change: labels, and whether wood may be taken away.
+
+    Edges into `kept` keep their label, and those into `kept` and `stays` are not taken away.
+    """
 
     kept: Collection[int]
     relabel: bool
     remove: bool
+    stays: Collection[int] = ()
 
 
 def settled(draft: Draft, allowed: Allowed) -> Draft | None:
     """The nearest legal tree; None where what may change does not make it legal."""
-    kept = set(allowed.kept)
+    kept = {*allowed.kept, *allowed.stays}
     removed, holds = dict[int, float](), dict[int, bool]()
     best: dict[int, Found] = {}
     for node in reversed(draft.nodes):

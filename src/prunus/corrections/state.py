@@ -6,15 +6,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from prunus.corrections.acts import Act, Mark, Rebuild, Search, SetStatus, Step, Together
+from prunus.corrections.acts import Act, Mark, PickBase, Rebuild, Search, SetStatus, Step, Together
 from prunus.corrections.apply import corrected
 from prunus.corrections.draft import Draft
 from prunus.corrections.hold import NOTHING, Held, searched
 from prunus.corrections.marks import Kinds, chosen
 from prunus.corrections.refused import Refused
-from prunus.corrections.steps import explicit
+from prunus.corrections.steps import explicit, place_of
 from prunus.errors import PrunusError
 from prunus.model import Floats, Kind, PointCloud
+from prunus.params import Parameters
 from prunus.pipeline import Result, skeletonize
 
 
@@ -22,12 +23,13 @@ from prunus.pipeline import Result, skeletonize
 class State:
     """A tree after some acts. The values before it stay as they were.
 
-    `scan` holds all points; `result` is what the machine made of those that are the tree; `kind`
-    (P,) what each point is, by isolation or by hand (`marked`); `base` (3,), house frame, where a
-    person put it; `held` what a new search keeps.
+    `scan` holds all points; `params` is how the machine is run; `result` what it made of the points
+    that are the tree; `kind` (P,) what each point is, by isolation or by hand (`marked`); `base`
+    (3,), house frame, where a person put it; `held` what a new search keeps.
     """
 
     scan: PointCloud
+    params: Parameters
     result: Result
     kind: Kinds
     draft: Draft
@@ -39,10 +41,15 @@ class State:
     @classmethod
     def of(cls, result: Result) -> State:
         """What the machine found, before any act."""
-        none = np.full(len(result.scan), Kind.TARGET, np.int8)
-        kind = none if result.isolated is None else result.isolated.kind.astype(np.int8)
-        kind.setflags(write=False)
-        return cls(result.scan, result, kind, Draft.of(result))
+        return cls(result.scan, result.params, result, _kinds(result), Draft.of(result))
+
+
+def _kinds(result: Result) -> Kinds:
+    """What each point of a scan is, as isolation has it: all the tree, where nothing was asked."""
+    none = np.full(len(result.scan), Kind.TARGET, np.int8)
+    kind = none if result.isolated is None else result.isolated.kind.astype(np.int8)
+    kind.setflags(write=False)
+    return kind
 
 
 def apply(state: State, act: Act) -> State:
@@ -53,6 +60,8 @@ def apply(state: State, act: Act) -> State:
     """
     if isinstance(act, SetStatus):
         return replace(state, done=act.done)
+    if isinstance(act, PickBase):
+        return replace(state, base=place_of(state.draft, act.place, state.result.graph))
     if isinstance(act, Mark):
         return _marked(state, act)
     if isinstance(act, Rebuild):
@@ -66,7 +75,7 @@ def apply(state: State, act: Act) -> State:
 
 def clear(state: State, act: Act) -> Act:
     """The same act, with nothing left to the graph: a routed path names its superpoints."""
-    if isinstance(act, Mark | Rebuild | Search | SetStatus):
+    if isinstance(act, PickBase | Mark | Rebuild | Search | SetStatus):
         return act
     return explicit(state.draft, act, state.result.graph)
 
@@ -94,10 +103,13 @@ def _rebuilt(state: State) -> State:
     target = state.kind == Kind.TARGET
     if not target.any():
         raise Refused("no point is marked as the target", "holds_the_tree")
-    params = state.result.params.changed("isolation", isolate="never")
+    cloud, params = state.scan, state.params
+    if state.marked:
+        cloud, params = cloud.take(target), params.changed("isolation", isolate="never")
     base = None if state.base is None else state.scan.to_input.apply(state.base)
     try:
-        result = skeletonize(state.scan.take(target), base, params, state.result.seed)
+        result = skeletonize(cloud, base, params, state.result.seed)
     except PrunusError as error:
         raise Refused(f"of the points left: {error}", "holds_the_tree") from error
-    return replace(state, result=result, draft=Draft.of(result), held=NOTHING)
+    kind = state.kind if state.marked else _kinds(result)
+    return replace(state, result=result, kind=kind, draft=Draft.of(result), held=NOTHING)

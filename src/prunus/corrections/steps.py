@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -86,32 +86,48 @@ def _routed(draft: Draft, act: AddPath, graph: SeededGraph) -> tuple[Place, ...]
 
 
 def _add_path(draft: Draft, act: AddPath, graph: SeededGraph) -> Stepped:
-    start, *stops = _routed(draft, act, graph) if act.routed else act.stops
+    start = act.stops[0]
     if not isinstance(start, int) or start not in draft:
         text = "a path starts in the tree, and ends outside it"
         raise Refused(text, "stays_a_tree", [start] if isinstance(start, int) else []).at(draft)
-    longer, nodes = _placed(draft, stops, graph)
-    again = [node for k, node in enumerate(nodes) if node in draft or node in nodes[:k]]
-    if again:
-        text = f"node {again[0]} would be reached twice: a tree has no loops"
-        raise Refused(text, "stays_a_tree", again).at(draft)
+    _check_new(draft, [stop for stop in act.stops[1:] if isinstance(stop, int)])
+    stops = _routed(draft, act, graph) if act.routed else act.stops
+    longer, nodes = _placed(draft, stops[1:], graph)
     into = {node: (above, act.label) for above, node in zip([start, *nodes], nodes, strict=False)}
     return _long_enough(Stepped(longer.changed(into), frozenset(nodes)), nodes)
 
 
-def _placed(draft: Draft, stops: list[Place], graph: SeededGraph) -> tuple[Draft, list[int]]:
+def _check_new(draft: Draft, nodes: list[int]) -> None:
+    """Raise where nodes are not there, in the tree already, or named twice."""
+    absent = [node for node in nodes if node >= len(draft.places)]
+    if absent:
+        draft.require(absent[0])
+    again = [node for k, node in enumerate(nodes) if node in draft or node in nodes[:k]]
+    if again:
+        text = f"node {again[0]} would be reached twice: a tree has no loops"
+        raise Refused(text, "stays_a_tree", again).at(draft)
+
+
+def _placed(draft: Draft, stops: Sequence[Place], graph: SeededGraph) -> tuple[Draft, list[int]]:
     """The draft with the free points among some stops, and the node of each stop."""
     nodes: list[int] = []
     free: list[Floats] = []
     for stop in stops:
         if isinstance(stop, int):
-            if stop >= len(draft.places):
-                draft.require(stop)
             nodes.append(stop)
         else:
             nodes.append(len(draft.places) + len(free))
             free.append(in_house(stop, graph))
     return draft.with_places(free), nodes
+
+
+def place_of(draft: Draft, place: Place, graph: SeededGraph) -> Floats:
+    """Where a node or a free point is (3,), house frame."""
+    if not isinstance(place, int):
+        return in_house(place, graph)
+    if place >= len(draft.places):
+        draft.require(place)
+    return np.asarray(draft.places[place])
 
 
 def in_house(point: tuple[float, float, float], graph: SeededGraph) -> Floats:
@@ -176,6 +192,8 @@ def _reattach(draft: Draft, act: Reattach, _: SeededGraph) -> Stepped:
 
 
 def _move_base(draft: Draft, act: MoveBase, graph: SeededGraph) -> Stepped:
+    if isinstance(act.place, int) and act.place >= len(draft.places):
+        draft.require(act.place)
     draft, [node] = _placed(draft, [act.place], graph)
     if node == draft.base:
         raise Refused("the base is there already", "changes_something", [node]).at(draft)

@@ -8,6 +8,7 @@ import re
 from functools import cache
 from typing import Annotated, Any, TypeVar, cast
 
+import numpy as np
 from pydantic import (
     ConfigDict,
     Field,
@@ -82,9 +83,10 @@ def name_of(kind: type) -> str:
 
 
 def told(value: Any, key: str) -> dict[str, Any]:
-    """A value as an object of JSON."""
+    """A value as an object of JSON; ValueError where a field is of no such type."""
     kind: Any = type(value)
-    return {key: name_of(kind), **_adapter(kind).dump_python(value, mode="json", warnings=False)}
+    fields = _adapter(kind).dump_python(value, mode="json", warnings=False, fallback=_plain)
+    return {key: name_of(kind), **fields}
 
 
 def read(value: Any, key: str, kinds: tuple[type[Value], ...]) -> Value:
@@ -118,6 +120,13 @@ def short(value: Any) -> str:
     """A value in a message, not too long."""
     text = repr(value)
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _plain(value: Any) -> Any:
+    """A number or an array of numpy as JSON has it."""
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    raise ValueError(f"found {short(value)}, which JSON cannot hold")
 
 
 @cache
