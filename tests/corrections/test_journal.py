@@ -9,12 +9,12 @@ from prunus.corrections import RemoveEdge, SetStatus, status_of
 from prunus.corrections.journal import (
     NAME,
     Head,
-    Timeline,
     append,
     begin,
     read_journal,
     resume,
 )
+from prunus.corrections.timeline import Timeline
 from prunus.errors import PrunusError
 from prunus.params import Parameters
 
@@ -61,13 +61,16 @@ def test_what_was_written_is_read(path: Path) -> None:
     assert journal.size == len(path.read_bytes())
 
 
-def test_a_new_act_forgets_those_undone() -> None:
-    assert Timeline().can("undo") is False
-    assert Timeline().can("redo") is False
+def test_at_first_there_is_nothing_to_undo_or_redo() -> None:
+    assert not Timeline().can("undo")
+    assert not Timeline().can("redo")
+    assert Timeline().can(RemoveEdge(1))
 
 
 def test_undone_acts_do_not_stand(path: Path) -> None:
-    timeline = Timeline.of(read_journal(path))
+    journal = read_journal(path)
+    assert journal is not None
+    timeline = Timeline.of(journal.lines)
     assert timeline.standing == [RemoveEdge(3), RemoveEdge(4), SetStatus(True)]
 
 

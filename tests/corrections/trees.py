@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from prunus.corrections import (
     Act,
@@ -73,7 +74,7 @@ def spare(at: State, of: int) -> int:
     return at.draft.superpoints // 2 + of
 
 
-def outside(at: State, place: np.ndarray) -> tuple[float, float, float]:
+def outside(at: State, place: ArrayLike) -> tuple[float, float, float]:
     """A place of the house frame in the frame of the file."""
     x, y, z = at.scan.to_input.apply(place).tolist()
     return x, y, z

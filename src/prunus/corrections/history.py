@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from prunus.corrections.acts import Act, Rebuild, Search
-from prunus.corrections.journal import Line, Timeline
 from prunus.corrections.sources import skeleton_digest, superpoints_digest
 from prunus.corrections.state import State, apply
+from prunus.corrections.timeline import Line, Timeline
 from prunus.errors import PrunusError
 
 KEPT = 100
@@ -51,7 +51,9 @@ class History:
                 del self._states[k]
 
     def _act(self, number: int) -> Act:
-        return self.timeline.acts[number]
+        move = self.timeline.lines[number].move
+        assert not isinstance(move, str)
+        return move
 
     def replay(self, path: Path) -> list[str]:
         """Do all acts that stand, as a journal has them; notes where they give something else.

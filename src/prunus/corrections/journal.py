@@ -19,7 +19,8 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from prunus.corrections.acts import Act, SetStatus, from_json, to_json
+from prunus.corrections.acts import SetStatus, from_json, to_json
+from prunus.corrections.timeline import Line, Move, Timeline
 from prunus.corrections.wire import problem_in
 from prunus.errors import PrunusError
 from prunus.io.safely import write_bytes
@@ -29,7 +30,6 @@ from prunus.params import Parameters
 
 NAME = "journal.jsonl"
 Status = Literal["new", "in work", "done"]
-Move = Act | Literal["undo", "redo"]
 
 
 class Head(BaseModel):
@@ -52,16 +52,6 @@ class Head(BaseModel):
     superpoints: str
     gives: str
     version_of_prunus: str
-
-
-@dataclass(frozen=True)
-class Line:
-    """A further line: its number in the file, when, what, and a digest of what it gave."""
-
-    number: int
-    at: str
-    move: Move
-    gives: str | None
 
 
 @dataclass(frozen=True)
@@ -159,49 +149,10 @@ def _check_moves(path: Path, lines: tuple[Line, ...]) -> None:
         timeline = timeline.after(line)
 
 
-@dataclass(frozen=True)
-class Timeline:
-    """Lines with acts, one after another; those from `position` on were undone."""
-
-    lines: tuple[Line, ...] = ()
-    position: int = 0
-
-    @classmethod
-    def of(cls, journal: Journal | None) -> Timeline:
-        """The timeline at the end of a journal."""
-        timeline = cls()
-        for line in journal.lines if journal else ():
-            timeline = timeline.after(line)
-        return timeline
-
-    @property
-    def acts(self) -> list[Act]:
-        """The acts, those that were undone at the end."""
-        return [line.move for line in self.lines if not isinstance(line.move, str)]
-
-    @property
-    def standing(self) -> list[Act]:
-        """The acts that were not undone."""
-        return self.acts[: self.position]
-
-    def can(self, move: Move) -> bool:
-        """Whether there is something to undo, or to redo."""
-        if move == "undo":
-            return self.position > 0
-        return move != "redo" or self.position < len(self.lines)
-
-    def after(self, line: Line) -> Timeline:
-        """The timeline one line later; a new act forgets those undone."""
-        if line.move == "undo":
-            return Timeline(self.lines, self.position - 1)
-        if line.move == "redo":
-            return Timeline(self.lines, self.position + 1)
-        return Timeline((*self.lines[: self.position], line), self.position + 1)
-
-
 def status_of(folder: Path) -> Status:
     """How far a tree is, by the files in its work folder; PrunusError on a corrupt journal."""
-    timeline = Timeline.of(read_journal(folder / NAME))
+    journal = read_journal(folder / NAME)
+    timeline = Timeline.of(journal.lines if journal else ())
     said = [act.done for act in timeline.standing if isinstance(act, SetStatus)]
     if said and said[-1]:
         return "done"

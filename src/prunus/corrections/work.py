@@ -20,9 +20,10 @@ from prunus.corrections import journal as book
 from prunus.corrections import lock
 from prunus.corrections.acts import Act, from_json, to_json
 from prunus.corrections.history import OTHER, History, gives
-from prunus.corrections.journal import End, Head, Journal, Timeline
+from prunus.corrections.journal import End, Head, Journal
 from prunus.corrections.sources import Machine, Settings, run, source_from, superpoints_digest
 from prunus.corrections.state import State, apply, clear
+from prunus.corrections.timeline import Move, Timeline
 from prunus.errors import PrunusError
 from prunus.io.classes import write_classes
 from prunus.io.safely import remove
@@ -84,7 +85,7 @@ class Work:
         journal = book.read_journal(path)
         begun = journal if journal is not None and journal.lines else None
         machine = run(source_from(source, settings), begun.head if begun else None)
-        history = History(State.of(machine.result), Timeline.of(begun))
+        history = History(State.of(machine.result), Timeline.of(begun.lines if begun else ()))
         notes = [*machine.notes, *(_replayed(path, begun, history) if begun else [])]
         work = cls(folder, machine, history, notes)
         if holder is not None:
@@ -164,7 +165,7 @@ class Work:
                 return None
             return self._write(move, self._history.at(self.position + step))
 
-    def _write(self, move: book.Move, state: State) -> State:
+    def _write(self, move: Move, state: State) -> State:
         """Write a line, then the files that follow from what it gave."""
         path, end = self.folder / book.NAME, self._require_own()
         line, self._end = book.append(path, end, move, gives(move, state))
