@@ -254,7 +254,9 @@ def simulate(
 
 @app.command()
 def train(
-    folder: Annotated[Path, typer.Argument(help="Simulated scans, from `prunus simulate`.")],
+    folders: Annotated[
+        list[Path], typer.Argument(help="Simulated scans, or the studio's folders with labels.")
+    ],
     output: Annotated[Path, typer.Option("-o", "--output", help="Weights to write (.onnx).")],
     network: Annotated[
         Network, typer.Option(help="edges: their confidence; isolation: one tree out of a scan.")
@@ -262,6 +264,15 @@ def train(
     edge_net: Annotated[
         EdgeNet, typer.Option(help="paper: Appendix A; ours: edges in context.")
     ] = EdgeNet.OURS,
+    start: Annotated[
+        str | None,
+        typer.Option(
+            "--from", help="Go on from: ours, paper, a file, scratch. [default: ours with labels]"
+        ),
+    ] = None,
+    scans: Annotated[
+        Path | None, typer.Option(help="Where the labelled scans lie. [default: looked for]")
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
     epochs: Annotated[int | None, typer.Option(min=1, help="[default: as the recipe]")] = None,
     jobs: Annotated[int, typer.Option(min=1, help="Scans at the same time.")] = os.cpu_count() or 1,
@@ -269,24 +280,27 @@ def train(
     """Learn the edge confidence (or isolation) from simulated scans; prints the paper's tables.
 
     `prunus train orchard -o mine.onnx`, then `prunus skeletonize tree.ply --weights mine.onnx`
+
+    From edges labelled in the studio, going on from our network: `prunus train prunus-studio -o
+    mine.onnx`
     """
-    from prunus.learn.school import isolation_school, school
-    from prunus.learn.tables import table
+    from prunus.learn.school import Course, isolation_school, lines_of, school
     from prunus.progress import bar_of, progress_bar
 
     try:
         with progress_bar() as bar:
             if network == Network.ISOLATION:
-                report = isolation_school(folder, output, seed, epochs, jobs, bar_of(bar))
+                report = isolation_school(folders, output, seed, epochs, jobs, bar_of(bar))
             else:
-                report = school(folder, output, edge_net.value, seed, epochs, jobs, bar_of(bar))
+                course = Course(edge_net.value, start, seed, epochs, scans)
+                report = school(folders, output, course, jobs, bar_of(bar))
     except PrunusError as error:
         _stop(error)
     if network == Network.ISOLATION:
         kept, removed = report["test"]
         typer.echo(f"test trees: {kept:.1%} of the points kept, {removed:.1%} of all others out")
         return
-    for line in table(report["validation"], report["test"]):
+    for line in lines_of(report):
         typer.echo(line)
 
 

@@ -74,7 +74,7 @@ def test_a_folder_of_scans_gives_a_network_that_tells_kinds(
 ) -> None:
     monkeypatch.setattr(examples, "POINTS", (10_000, 20_000))
     weights = tmp_path / "mine.onnx"
-    report = isolation_school(orchard, weights, 0, 3, 1, lambda items, name, total: items)
+    report = isolation_school([orchard], weights, 0, 3, 1, lambda items, name, total: items)
     assert report["trees"] == [4, 1]
     assert report["losses"][-1] < 0.8 * report["losses"][0]
     assert weights.with_suffix(".json").exists()

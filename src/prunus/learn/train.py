@@ -11,8 +11,10 @@ import copy
 import io
 import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -20,10 +22,12 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
+from prunus.io.labels import CATEGORIES
 from prunus.learn.examples import Example
-from prunus.learn.labels import CATEGORIES, INVALID
+from prunus.learn.labels import INVALID, SOME, UNTOLD
 from prunus.learn.logistic import fit_logistic
 from prunus.learn.net import VALIDITY, Calibrated, ContextNet, PaperNet
+from prunus.learn.start import start_from
 from prunus.model import Floats, Ints
 
 SHARES = (2 / 3, 1 / 3)
@@ -45,9 +49,11 @@ class Recipe(Protocol):
     epochs: int
     weights: Tensor | None
     """Of the five categories in the category loss."""
+    start: Path | None
+    """The exported network to go on from."""
 
     def network(self) -> nn.Module:
-        """The network, untrained."""
+        """The network as training begins."""
 
     def batches(self, examples: list[Example], rng: np.random.Generator) -> Iterator[Batch]:
         """One epoch's batches."""
@@ -66,18 +72,23 @@ class PaperRecipe:
     size: int = 256
     every: int = 10
     weights: Tensor | None = None
+    start: Path | None = None
 
     def network(self) -> nn.Module:
         """Appendix A."""
-        return PaperNet()
+        return begun(PaperNet(), self.start)
 
     def batches(self, examples: list[Example], rng: np.random.Generator) -> Iterator[Batch]:
-        """Batches of `size` edges with random flips, `edges` an epoch."""
+        """Batches of `size` edges with random flips, `edges` an epoch of each kind of example."""
+        return taking_turns([self._drawn(own, rng) for own in kinds(examples)])
+
+    def _drawn(self, examples: list[Example], rng: np.random.Generator) -> Iterator[Batch]:
         owner = np.repeat(np.arange(len(examples)), [len(one.category) for one in examples])
         place = np.concatenate([np.arange(len(one.category)) for one in examples])
         category = np.concatenate([one.category for one in examples])
-        held = [np.flatnonzero(category == k) for k in range(INVALID, len(CATEGORIES))]
-        drawn = [rng.choice(rows, self.edges // len(held)) for rows in held if len(rows)]
+        every = [np.flatnonzero(category == k) for k in range(INVALID, SOME + 1)]
+        held = [rows for rows in every if len(rows)]
+        drawn = [rng.choice(rows, self.edges // len(held)) for rows in held]
         for rows in np.array_split(rng.permutation(np.concatenate(drawn)), self.edges // self.size):
             edges = [(examples[owner[row]], place[row]) for row in rows]
             images = np.stack([one.images[k] for one, k in edges]).astype(np.float32) / 255
@@ -90,9 +101,10 @@ class PaperRecipe:
     def judged(self, examples: list[Example]) -> Iterator[Batch]:
         """Some edges of each example: a network that looks at four flips is slow."""
         for example in examples:
-            yield self.seen(example, slice(None, None, self.every))
+            rows = np.flatnonzero(example.told)
+            yield self.seen(example, rows[:: self.every] if example.told.all() else rows)
 
-    def seen(self, example: Example, rows: slice = slice(None)) -> Batch:
+    def seen(self, example: Example, rows: slice | Ints = slice(None)) -> Batch:
         """Images and descriptions of an example."""
         images = example.images[rows].astype(np.float32) / 255
         category = torch.from_numpy(example.category[rows])
@@ -107,14 +119,28 @@ class ContextRecipe:
     rate: float = 2e-3
     graphs: int = 4
     weights: Tensor | None = None
+    start: Path | None = None
 
     def network(self) -> nn.Module:
         """Each edge among those that it meets."""
-        return ContextNet()
+        return begun(ContextNet(), self.start)
 
     def batches(self, examples: list[Example], rng: np.random.Generator) -> Iterator[Batch]:
-        """Batches of `graphs` graphs side by side, each example once."""
-        order = rng.permutation(len(examples))
+        """Batches of `graphs` graphs side by side, each example once.
+
+        Where there are two kinds of them, as many of each: those of the rarer more than once, or
+        in going on from a network not all of the other.
+        """
+        by_kind = kinds(examples)
+        counts = [len(own) for own in by_kind]
+        count = max(counts) if self.start is None else min(counts)
+        return taking_turns([self._drawn(own, count, rng) for own in by_kind])
+
+    def _drawn(
+        self, examples: list[Example], count: int, rng: np.random.Generator
+    ) -> Iterator[Batch]:
+        rounds = math.ceil(count / len(examples))
+        order = np.concatenate([rng.permutation(len(examples)) for _ in range(rounds)])[:count]
         for rows in np.array_split(order, math.ceil(len(order) / self.graphs)):
             yield side_by_side([examples[row] for row in rows])
 
@@ -131,6 +157,38 @@ RECIPES: dict[str, type[PaperRecipe] | type[ContextRecipe]] = {
     "paper": PaperRecipe,
     "ours": ContextRecipe,
 }
+FURTHER: dict[str, Callable[..., PaperRecipe | ContextRecipe]] = {
+    "paper": partial(PaperRecipe, epochs=6, rate=1e-4, edges=6000),
+    "ours": partial(ContextRecipe, epochs=6, rate=3e-4),
+}
+"""For going on from a network: fewer and smaller steps, so that it forgets little."""
+
+
+def recipe_for(
+    name: str, start: Path | None, epochs: int | None = None
+) -> PaperRecipe | ContextRecipe:
+    """The recipe of a network: from scratch, or gently on from an exported one."""
+    recipe = RECIPES[name]() if start is None else FURTHER[name](start=start)
+    recipe.epochs = epochs or recipe.epochs
+    return recipe
+
+
+def kinds(examples: list[Example]) -> list[list[Example]]:
+    """The examples of which every edge is told of, and those of which a person labelled some."""
+    told = [bool(one.told.all()) for one in examples]
+    both = [[one for one, own in zip(examples, told, strict=True) if own == kind]
+            for kind in (True, False)]  # fmt: skip
+    return [own for own in both if own]
+
+
+def taking_turns(several: list[Iterator[Batch]]) -> Iterator[Batch]:
+    """A batch of each in turn, so that each kind counts as much, however few its edges are."""
+    return (batch for batches in zip(*several, strict=True) for batch in batches)
+
+
+def begun(net: nn.Module, start: Path | None) -> nn.Module:
+    """The network with the parameters of the file that it starts from, if any."""
+    return net if start is None else start_from(start, net)
 
 
 def side_by_side(examples: list[Example]) -> Batch:
@@ -155,12 +213,17 @@ def tensors(*arrays: Any) -> tuple[Tensor, ...]:
 
 
 def losses(found: Tensor, category: Tensor, weights: Tensor | None = None) -> tuple[Tensor, Tensor]:
-    """Cross entropy of validity over all edges, and of the category over the valid ones."""
-    valid = category >= 0
-    validity = functional.cross_entropy(found[:, :VALIDITY], valid.long())
-    if not valid.any():
+    """Cross entropy of validity over all edges, and of the category over the valid ones.
+
+    Over those of which it was told, that is.
+    """
+    told, named = category > UNTOLD, (category >= 0) & (category < SOME)
+    if not told.any():
+        return 0 * found.sum(), 0 * found.sum()
+    validity = functional.cross_entropy(found[told, :VALIDITY], (category[told] >= 0).long())
+    if not named.any():
         return validity, 0 * validity
-    kind = functional.cross_entropy(found[valid, VALIDITY:], category[valid], weights)
+    kind = functional.cross_entropy(found[named, VALIDITY:], category[named], weights)
     return validity, kind
 
 
@@ -183,6 +246,8 @@ def train(
         optimizer, recipe.rate, total_steps=steps * recipe.epochs + 1
     )
     best, least = copy.deepcopy(net), math.inf
+    if recipe.start is not None:
+        least = validation_loss(net, recipe, validation)
     for _ in range(recipe.epochs):
         net.train()
         for inputs, category in recipe.batches(training, rng):
@@ -208,9 +273,21 @@ def validation_loss(net: nn.Module, recipe: Recipe, examples: list[Example]) -> 
 def even_weights(examples: list[Example]) -> Tensor:
     """Weights (5,) of the categories: rare ones weigh more, by the root of their rarity."""
     category = np.concatenate([one.category for one in examples])
-    counts = np.bincount(category[category >= 0], minlength=len(CATEGORIES))
+    named = (category >= 0) & (category < SOME)
+    counts = np.bincount(category[named], minlength=len(CATEGORIES))
     weights = 1 / np.sqrt(np.maximum(counts, 1))
     return torch.tensor(weights / weights.mean(), dtype=torch.float32)
+
+
+def finished(net: nn.Module, recipe: Recipe, validation: list[Example]) -> Calibrated:
+    """The network as it ships.
+
+    One that went on from another stays as that was calibrated: the edges that people label are
+    those that it could not tell, of which no stretch can be learned.
+    """
+    if recipe.start is not None:
+        return Calibrated(net, 1.0, 0.0)
+    return calibrated(net, recipe, validation)
 
 
 @torch.no_grad()
@@ -219,19 +296,25 @@ def calibrated(net: nn.Module, recipe: Recipe, examples: list[Example]) -> Calib
     net.eval()
     pairs = [(net(*seen), category) for seen, category in recipe.judged(examples)]
     found = torch.cat([one for one, _ in pairs])
-    odds = (found[:, 1] - found[:, 0]).double().numpy()
-    valid = torch.cat([category for _, category in pairs]).numpy() >= 0
-    stretch, shift = fit_logistic(odds[:, None], valid)
+    category = torch.cat([own for _, own in pairs]).numpy()
+    told = category > UNTOLD
+    odds = (found[:, 1] - found[:, 0]).double().numpy()[told]
+    stretch, shift = fit_logistic(odds[:, None], category[told] >= 0)
     return Calibrated(net, float(stretch), float(shift))
 
 
 @torch.no_grad()
 def predict(net: Calibrated, recipe: Recipe, examples: list[Example]) -> tuple[Floats, Ints, Ints]:
-    """Confidence (E,), likeliest category (E,) and the true one (E,) of the edges judged."""
+    """Confidence (E,), likeliest category (E,) and the true one (E,) of the edges judged.
+
+    Of those of which it was told.
+    """
     net.eval()
     found = [(*net(*seen), category) for seen, category in recipe.judged(examples)]
     confidence, category, truth = (torch.cat(column) for column in zip(*found, strict=True))
-    return confidence.double().numpy(), category.argmax(dim=1).numpy(), truth.numpy()
+    told = truth > UNTOLD
+    likeliest = category[told].argmax(dim=1)
+    return confidence[told].double().numpy(), likeliest.numpy(), truth[told].numpy()
 
 
 def onnx_bytes(
