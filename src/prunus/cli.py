@@ -345,25 +345,36 @@ def experiment(
         ScanKind.FIELD
     ),
     seed: Annotated[int, typer.Option(min=0, help="Another seed, other trees.")] = 0,
+    gold: Annotated[
+        Path | None,
+        typer.Option(help="Your own trees in place of simulated ones: the studio's work folder."),
+    ] = None,
+    scans: Annotated[
+        Path | None, typer.Option(help="Where your own scans lie. [default: looked for]")
+    ] = None,
     ablation: Annotated[
         bool, typer.Option("--ablation", help="Also what each part brings, one at a time.")
     ] = False,
     jobs: Annotated[int, typer.Option(min=1, help="Trees at the same time.")] = os.cpu_count() or 1,
 ) -> None:
-    """Run the paper's result section on simulated trees: tables, figures, index.html.
+    """Run the paper's result section on simulated trees or your own: tables, figures, a page.
 
     A quick look: `prunus experiment -o out --trees 6 --draws 1`
 
+    On your own trees, corrected in the studio: `prunus experiment --gold prunus-studio -o out`
+
     Stopped half way, the same command goes on where it was.
     """
-    from prunus.experiment.results import experiment, lines_of
+    from prunus.experiment.results import Orchard, experiment, lines_of
     from prunus.progress import bar_of, progress_bar
 
     try:
+        if gold is None:
+            orchard = Orchard.simulated(trees, scan.value, seed)
+        else:
+            orchard = Orchard.corrected(gold, scans)
         with progress_bar() as bar:
-            results = experiment(
-                output, trees, draws, scan.value, seed, ablation, min(jobs, trees), bar_of(bar)
-            )
+            results = experiment(output, orchard, draws, ablation, jobs, bar_of(bar))
     except PrunusError as error:
         _stop(error)
     for line in [*lines_of(results), "", f"written to {output / 'index.html'}"]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.evaluate.curves import curve_measures, line_measures
-from prunus.evaluate.edits import edits, label_ratios
+from prunus.evaluate.edits import edits, label_ratios, on_same_nodes
 from prunus.evaluate.found import branch_measures
 from prunus.io.lines import READERS, read_lines
 from prunus.io.skeletons import read_skeleton
@@ -61,8 +61,9 @@ def compare(name: str, predicted: Path, gold: Path) -> Record:
         measures = line_measures(read_lines(predicted), read_lines(gold))
         return {"name": name, "labels": False, **measures}
     record: Record = {"name": name, "labels": True}
-    if _same_superpoints(ours, theirs):
-        needed = edits(ours, theirs)
+    both = on_same_nodes(ours, theirs)
+    if both is not None:
+        needed = edits(*both)
         record |= {"edit_ratio": needed.ratio, "wrong": needed.wrong, "missing": needed.missing,
                    "mislabelled": needed.mislabelled, "edges": needed.edges}  # fmt: skip
         ratios = label_ratios([needed])
@@ -80,14 +81,6 @@ def _labelled(path: Path) -> Skeleton | None:
         return read_skeleton(path)
     except PrunusError:
         return None
-
-
-def _same_superpoints(one: Skeleton, other: Skeleton) -> bool:
-    """Whether two skeletons share superpoints: where a number stands in both, so does the place."""
-    if (one.superpoint < 0).any() or (other.superpoint < 0).any():
-        return False
-    _, mine, theirs = np.intersect1d(one.superpoint, other.superpoint, return_indices=True)
-    return len(mine) > 0 and bool(np.allclose(one.xyz[mine], other.xyz[theirs], atol=1e-4))
 
 
 def spread_lines(records: list[Record]) -> list[str]:

@@ -16,18 +16,17 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.intake import open_scan
-from prunus.io.labels import CATEGORIES, EdgeLabel, LabelHead, read_labels
+from prunus.io.labels import CATEGORIES, EdgeLabel, LabelHead, Labels, read_labels
+from prunus.io.masks import target_of
 from prunus.io.original import original_of
-from prunus.io.ply import read_ply
-from prunus.io.safely import read_bytes
 from prunus.learn.examples import Example, by_scan, drawn, example_of, seen_again
 from prunus.learn.labels import INVALID, SOME, UNTOLD
-from prunus.model import CandidateGraph, Ints, Kind, PointCloud
+from prunus.model import CandidateGraph, Ints, PointCloud
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.stages.candidates import find_candidates
 
-VIEWS = 8
+VIEWS = 4
 """Each graph is seen in so many draws of its cloud, the first that of the studio."""
 SAME_PLACE = 1e-3
 """A superpoint is the one that was labelled when it is within so many metres of where that was."""
@@ -47,7 +46,7 @@ class LabelledTree:
 
 
 @dataclass(frozen=True, eq=False)
-class _Graph:
+class MadeGraph:
     """A candidate graph, and the cloud (all points of the tree) that it was made from."""
 
     cloud: PointCloud
@@ -68,25 +67,38 @@ def labelled_tree(path: Path, seed: int, scans: Path | None = None) -> LabelledT
     graph that the chain makes of it.
     """
     held = read_labels(path)
-    source = original_of(held.head.input, path.parent, scans)
     rng = np.random.default_rng([seed, *path.parent.name.encode()])
-    waiting, graphs = held.labels, list[list[Example]]()
+    found, over = labelled_graphs(held, scans)
+    graphs = [list(_views(graph, category, rng)) for graph, category in found]
+    return LabelledTree(path.parent.name, graphs, len(held.labels), len(over))
+
+
+def labelled_graphs(
+    held: Labels, scans: Path | None = None
+) -> tuple[list[tuple[MadeGraph, Ints]], list[EdgeLabel]]:
+    """The graphs on which labels lie, with the category (E,) of their edges; labels left over.
+
+    Raises PrunusError where the scan is not found, or no label lies on an edge.
+    """
+    path = held.path
+    source = original_of(held.head.input, path.parent, scans)
+    over, graphs = held.labels, list[tuple[MadeGraph, Ints]]()
     for graph in _graphs(source, held.head, path.parent / "mask.ply"):
-        if not waiting:
+        if not over:
             break
-        category, waiting = matched(waiting, graph)
+        category, over = matched(over, graph)
         if (category > UNTOLD).any():
-            graphs.append(list(_views(graph, category, rng)))
+            graphs.append((graph, category))
     if held.labels and not graphs:
         raise PrunusError(
             f"{path}: none of its {len(held.labels)} labels is on an edge of the candidate graph "
             f"of {source}; expected the version of prunus that it was made with, "
             f"{held.head.version_of_prunus}"
         )
-    return LabelledTree(path.parent.name, graphs, len(held.labels), len(waiting))
+    return graphs, over
 
 
-def matched(labels: list[EdgeLabel], graph: _Graph) -> tuple[Ints, list[EdgeLabel]]:
+def matched(labels: list[EdgeLabel], graph: MadeGraph) -> tuple[Ints, list[EdgeLabel]]:
     """The category (E,) of each candidate edge, `UNTOLD` where no label is; the labels left over.
 
     A label is of the edge between superpoints of its numbers, where those lie where it says.
@@ -126,26 +138,23 @@ def split_by_edge(
     return found
 
 
-def _views(graph: _Graph, category: Ints, rng: np.random.Generator) -> Iterator[Example]:
+def _views(graph: MadeGraph, category: Ints, rng: np.random.Generator) -> Iterator[Example]:
     yield example_of(graph.candidates, category)
     for _ in range(VIEWS - 1):
         yield example_of(seen_again(graph.candidates, drawn(graph.cloud, rng)), category)
 
 
-def _graphs(source: Path, head: LabelHead, mask: Path) -> Iterator[_Graph]:
+def _graphs(source: Path, head: LabelHead, mask: Path) -> Iterator[MadeGraph]:
     """The candidate graph as the chain makes it, and that of the points marked as the target."""
     scan = open_scan(source, head.frame, head.unit)
     params = Parameters.parse(head.params, str(source))
     yield _graph(scan.cloud, head, params)
     if mask.exists():
-        vertex = read_ply(read_bytes(mask), mask)["vertex"]
-        if "kind" not in (vertex.dtype.names or ()) or len(vertex) != len(scan.cloud):
-            raise PrunusError(f"{mask}: expected the kind of each of the {len(scan.cloud)} points")
-        target = np.asarray(vertex["kind"] == Kind.TARGET)
+        target = target_of(mask, len(scan.cloud))
         yield _graph(scan.cloud.take(target), head, params.changed("isolation", isolate="never"))
 
 
-def _graph(cloud: PointCloud, head: LabelHead, params: Parameters) -> _Graph:
+def _graph(cloud: PointCloud, head: LabelHead, params: Parameters) -> MadeGraph:
     result = skeletonize(cloud, head.base, params, head.seed)
     own = cloud if result.isolated is None else cloud.take(result.isolated.target)
-    return _Graph(own, find_candidates(result.graph.superpoints))
+    return MadeGraph(own, find_candidates(result.graph.superpoints))

@@ -158,8 +158,8 @@ RECIPES: dict[str, type[PaperRecipe] | type[ContextRecipe]] = {
     "ours": ContextRecipe,
 }
 FURTHER: dict[str, Callable[..., PaperRecipe | ContextRecipe]] = {
-    "paper": partial(PaperRecipe, epochs=6, rate=1e-4, edges=6000),
-    "ours": partial(ContextRecipe, epochs=6, rate=3e-4),
+    "paper": partial(PaperRecipe, epochs=4, rate=1e-4, edges=6000),
+    "ours": partial(ContextRecipe, epochs=4, rate=3e-4),
 }
 """For going on from a network: fewer and smaller steps, so that it forgets little."""
 
