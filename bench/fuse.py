@@ -18,8 +18,8 @@ import numpy as np
 
 from prunus.kernels.neighbours import within
 from prunus.model import Camera, DepthView, Floats, Label, RigidMotion, RigView
+from prunus.model.rotations import turn_of, turned
 from prunus.sensing.fuse import fuse, merged
-from prunus.sensing.register import turn_of, turned
 from prunus.sensing.views import seen
 from prunus.simulate import Scan, simulate_scan
 

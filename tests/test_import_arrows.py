@@ -9,7 +9,7 @@ HOME = Path(prunus.__file__).parent
 FLOORS = [
     {"cli"},
     {"progress", "demo", "convert", "fusing", "batch", "experiment", "isolation", "judge"},
-    {"report", "evaluate", "simulate", "learn"},
+    {"report", "evaluate", "simulate", "learn", "corrections"},
     {"pipeline", "graphs", "intake"},
     {"sensing", "search", "stages", "measure", "io"},
     {"rules", "grammar", "params", "kernels"},

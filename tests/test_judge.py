@@ -69,6 +69,36 @@ def test_two_folders(tmp_path: Path) -> None:
     assert "no skeleton 'b'" in done.output
 
 
+def test_what_a_person_corrected_is_the_gold_standard_of_the_same_folder(tmp_path: Path) -> None:
+    whole = replace(tree(), superpoint=np.arange(len(tree())))
+    kept = np.ones(len(whole), bool)
+    kept[-1] = False
+    for name in ("a", "new"):
+        write_skeleton(tmp_path / name / "skeleton.json", whole)
+    write_skeleton(tmp_path / "a" / "corrected.json", whole.part(kept))
+    done = RUN.invoke(app, ["evaluate", str(tmp_path), str(tmp_path), "--json"])
+    assert done.exit_code == 0
+    held = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [one["name"] for one in held] == ["a"], "the other was not corrected"
+    assert (held[0]["wrong"], held[0]["missing"]) == (1, 0)
+
+
+def test_points_that_a_person_added_count_as_missing(tmp_path: Path) -> None:
+    """They stand on no superpoint: each is its own."""
+    whole = tree()
+    known = np.arange(len(whole))
+    kept = known < len(whole) - 2
+    write_skeleton(tmp_path / "found.json", replace(whole, superpoint=known).part(kept))
+    free = replace(whole, superpoint=np.where(kept, known, -1))
+    write_skeleton(tmp_path / "gold.json", free)
+    done = RUN.invoke(
+        app, ["evaluate", str(tmp_path / "found.json"), str(tmp_path / "gold.json"), "--json"]
+    )
+    held = json.loads(done.stdout)
+    assert (held["wrong"], held["missing"], held["mislabelled"]) == (0, 2, 0)
+    assert held["edit_ratio"] == pytest.approx(2 / (len(whole) - 1))
+
+
 @pytest.mark.parametrize(
     ("found", "says"),
     [("missing.json", "cannot be read"), ("gold.stl", "expected one of"), (".", "two files")],

@@ -155,11 +155,7 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
         folder / "skeleton.json",
         result.skeleton,
         score=result.score,
-        input={
-            "file": scan.file.name,
-            "sha256": scan.file.sha256,
-            "points": len(scan.cloud),
-        },
+        input=scan.record,
         params=result.params.model_dump(),
         seed=result.seed,
         version_of_prunus=__version__,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -23,6 +24,11 @@ class Scan:
     file: FileCloud
     frame: str
     notes: list[str]
+
+    @property
+    def record(self) -> dict[str, Any]:
+        """What files say of the input they came from."""
+        return {"file": self.file.name, "sha256": self.file.sha256, "points": len(self.cloud)}
 
 
 def open_scan(path: str | Path, frame: str = "auto", unit: str | None = None) -> Scan:

@@ -9,15 +9,11 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.intake import Scan, open_scan
-from prunus.io.clouds import WRITTEN, FileCloud, columns_of, write_cloud
-from prunus.io.ply import ply_bytes, table_of
-from prunus.io.safely import write_bytes
-from prunus.model import Floats, Ints, Kind
+from prunus.io.classes import write_classes
+from prunus.io.clouds import FileCloud, write_cloud
+from prunus.model import Floats
 from prunus.params import Parameters
 from prunus.sensing.isolate import Isolated, Scene, check_at, isolate, look_at
-
-KINDS = ", ".join(f"{kind.value} {kind.name.lower()}" for kind in Kind)
-"""The classes in words, as files have them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,11 +96,3 @@ def _write(path: Path, file: FileCloud, isolated: Isolated, classes: bool) -> No
         return
     held = isolated.target
     write_cloud(path, file.xyz[held], None if file.rgb is None else file.rgb[held])
-
-
-def write_classes(path: Path, file: FileCloud, kind: Ints) -> None:
-    """Write all points of a file as PLY, with the class (P,) of each as property `kind`."""
-    if path.suffix.lower() != ".ply":
-        raise PrunusError(f"{path}: classes are written as .ply")
-    columns = columns_of(file.xyz, file.rgb) | {"kind": kind.astype(np.uint8)}
-    write_bytes(path, ply_bytes({"vertex": table_of(columns)}, [WRITTEN, f"kind: {KINDS}"]))

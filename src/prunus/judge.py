@@ -21,23 +21,36 @@ Record = dict[str, Any]
 def pairs_in(skeletons: Path, gold: Path) -> list[tuple[str, Path, Path]]:
     """Name, skeleton and gold standard of each pair; in folders those of the same name.
 
-    A file has its own name, and `NAME/skeleton.json` or `NAME/truth.json` that of its folder.
+    A file has its own name, and `NAME/skeleton.json` or `NAME/truth.json` that of its folder. A
+    gold standard is what a person corrected, where there is any: `NAME/corrected.json`.
     Raises PrunusError where a gold standard has no skeleton, or there is none.
     """
     if not skeletons.is_dir() and not gold.is_dir():
         return [(str(skeletons), skeletons, gold)]
     if skeletons.is_dir() != gold.is_dir():
         raise PrunusError(f"{skeletons} and {gold}: expected two files or two folders")
-    ours, theirs = _named(skeletons, "skeleton"), _named(gold, "truth", "gold", "skeleton")
+    ours, theirs = _named(skeletons, "skeleton"), _gold_in(gold)
     if not theirs:
         raise PrunusError(
-            f"{gold}: no gold standard in it; expected NAME/truth.json, or NAME with one of "
-            f"{' '.join(sorted(READERS))}"
+            f"{gold}: no gold standard in it; expected NAME/corrected.json, NAME/truth.json, or "
+            f"NAME with one of {' '.join(sorted(READERS))}"
         )
     missing = sorted(set(theirs) - set(ours))
     if missing:
         raise PrunusError(f"{skeletons}: no skeleton {missing[0]!r}, which {gold} has")
     return [(name, ours[name], theirs[name]) for name in sorted(theirs)]
+
+
+def _gold_in(folder: Path) -> dict[str, Path]:
+    """The gold standards in a folder by name.
+
+    Beside trees that were corrected, one that was not has no gold standard: the machine's own
+    skeleton would be right by definition.
+    """
+    named = _named(folder, "corrected", "truth", "gold", "skeleton")
+    if not any(path.name == "corrected.json" for path in named.values()):
+        return named
+    return {name: path for name, path in named.items() if path.name != "skeleton.json"}
 
 
 def _named(folder: Path, *stems: str) -> dict[str, Path]:

@@ -92,14 +92,10 @@ def skeletonize(
     if foot is not None:
         place = ", ".join(f"{value:.2f}" for value in cloud.to_input.apply(foot))
         notes.append(f"no base was given: the foot of the trunk was found at ({place})")
-    learned = params.search.score == "learned" and scored.category.size > 0
-    if learned:
-        with _timed(seconds, "search"):
-            found = search_learned(seeded, shipped_score())
-    else:
-        if params.search.score == "learned":
-            notes.append(f"{scorer.name} tells no categories: the paper's score was taken")
-        found = _as_in_the_paper(seeded, params, rng, seconds)
+    learned = goes_by_learned_score(seeded, params)
+    if params.search.score == "learned" and not learned:
+        notes.append(f"{scorer.name} tells no categories: the paper's score was taken")
+    found = best_skeleton(seeded, params, rng, seconds)
     with _timed(seconds, "measures"):
         warnings += remarks(found.skeleton, seeded, for_tips=not learned)
     skeleton = found.skeleton if foot is None else _standing_at(foot, found.skeleton)
@@ -164,6 +160,21 @@ def _standing_at(foot: Floats, skeleton: Skeleton) -> Skeleton:
 
 FOOT_REACH = 0.15
 """The foot of a trunk is so near to its lowest superpoint, metres."""
+
+
+def goes_by_learned_score(seeded: SeededGraph, params: Parameters) -> bool:
+    """Whether the learned score is asked for, and the scorer tells the categories it takes."""
+    return params.search.score == "learned" and seeded.scored.category.size > 0
+
+
+def best_skeleton(
+    seeded: SeededGraph, params: Parameters, rng: np.random.Generator, seconds: Seconds
+) -> SearchResult:
+    """The best skeleton of a graph under the score that the parameters ask for."""
+    if goes_by_learned_score(seeded, params):
+        with _timed(seconds, "search"):
+            return search_learned(seeded, shipped_score())
+    return _as_in_the_paper(seeded, params, rng, seconds)
 
 
 def _as_in_the_paper(

@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from prunus.corrections.journal import NAME as JOURNAL
+from prunus.corrections.journal import read_journal, status_of
 from prunus.errors import PrunusError
 from prunus.evaluate.edits import edits, on_same_nodes
 from prunus.experiment.edges import NETWORKS, judged_edges
@@ -21,11 +23,10 @@ from prunus.experiment.habits import habits_of
 from prunus.experiment.orchard import Tree
 from prunus.experiment.trial import BY_HAND, Record, as_found, edited
 from prunus.intake import open_scan
-from prunus.io.jsonl import read_lines_of
+from prunus.io.classes import target_of
 from prunus.io.labels import read_labels
-from prunus.io.masks import target_of
 from prunus.io.original import original_of
-from prunus.io.skeletons import read_record
+from prunus.io.skeletons import Point, read_record
 from prunus.learn.labelled import labelled_graphs
 from prunus.model import PointCloud, Skeleton
 from prunus.params import Parameters
@@ -33,7 +34,7 @@ from prunus.pipeline import skeletonize
 
 STEP = 0.02
 """The corrected skeleton is given a node every so many metres, as true trees have them."""
-FILES = ("corrected.json", "skeleton.json", "mask.ply", "labels.jsonl", "journal.jsonl")
+FILES = ("corrected.json", "skeleton.json", "mask.ply", "labels.jsonl", JOURNAL)
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ def corrected_in(folder: Path, scans: Path | None = None) -> tuple[list[Correcte
     if not folder.is_dir():
         raise PrunusError(f"{folder}: no folder; expected the work folder of `prunus studio`")
     found = sorted(path.parent for path in folder.glob("*/corrected.json"))
-    done = [Corrected(own, scans) for own in found if _is_done(own / "journal.jsonl")]
+    done = [Corrected(own, scans) for own in found if _is_done(own)]
     if not done:
         raise PrunusError(
             f"{folder}: {len(found)} corrected trees, none of them done; expected "
@@ -107,20 +108,9 @@ def corrected_in(folder: Path, scans: Path | None = None) -> tuple[list[Correcte
     return done, sorted({own.name for own in found} - {one.name for one in done})
 
 
-def _is_done(journal: Path) -> bool:
+def _is_done(folder: Path) -> bool:
     """Whether the last word on a tree is that it is done; trees without a journal are."""
-    if not journal.exists():
-        return True
-    acts: list[Any] = []
-    position = 0
-    for _, line in read_lines_of(journal)[1:]:
-        if line.get("act") in ("undo", "redo"):
-            position += 1 if line["act"] == "redo" else -1
-        else:
-            acts = [*acts[:position], line]
-            position += 1
-    said = [act.get("done") for act in acts[:position] if act.get("act") == "set_status"]
-    return bool(said and said[-1])
+    return not (folder / JOURNAL).exists() or status_of(folder) == "done"
 
 
 @lru_cache(maxsize=4)
@@ -129,25 +119,24 @@ def _tree(subject: Corrected) -> Tree:
     gold, record = read_record(path)
     if record.input is None:
         raise PrunusError(f"{path}: input: none; expected the scan that it was made from")
-    head = _head(subject.folder / "journal.jsonl")
+    journal = read_journal(subject.folder / JOURNAL)
+    frame, unit, base = "auto", None, None
+    if journal is not None:
+        frame, unit, base = journal.head.frame, journal.head.unit, journal.head.base
     source = original_of(record.input, subject.folder, subject.scans)
-    scan = open_scan(source, head.get("frame", "auto"), head.get("unit"))
+    scan = open_scan(source, frame, unit)
     mask = subject.folder / "mask.ply"
     if mask.exists():
         cloud = scan.cloud.take(target_of(mask, len(scan.cloud)))
     else:
         params = Parameters.parse(record.params or {}, str(path))
-        cloud = _isolated(scan.cloud, head.get("base"), params, record.seed or 0)
+        cloud = _isolated(scan.cloud, base, params, record.seed or 0)
     truth = with_nodes_every(gold, STEP)
     habits = habits_of(truth.moved(scan.cloud.to_input.inverse()))
     return Tree(subject.name, cloud, truth, np.ones(len(truth), np.bool_), habits)
 
 
-def _head(journal: Path) -> dict[str, Any]:
-    return read_lines_of(journal)[0][1] if journal.exists() else {}
-
-
-def _isolated(cloud: PointCloud, base: Any, params: Parameters, seed: int) -> PointCloud:
+def _isolated(cloud: PointCloud, base: Point | None, params: Parameters, seed: int) -> PointCloud:
     """The points that the chain took for the tree, and nobody said otherwise."""
     isolated = skeletonize(cloud, base, params, seed).isolated
     return cloud if isolated is None else cloud.take(isolated.target)

@@ -70,6 +70,14 @@ def write_bytes(path: Path, content: bytes) -> None:
         raise PrunusError(f"{path}: cannot be written ({error.strerror})") from error
 
 
+def remove(path: Path) -> None:
+    """Remove a file, if it is there; PrunusError where that cannot be done."""
+    try:
+        path.unlink(missing_ok=True)
+    except OSError as error:
+        raise PrunusError(f"{path}: cannot be removed ({error.strerror})") from error
+
+
 def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)

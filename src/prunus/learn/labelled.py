@@ -16,8 +16,8 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.intake import open_scan
+from prunus.io.classes import target_of
 from prunus.io.labels import CATEGORIES, EdgeLabel, LabelHead, Labels, read_labels
-from prunus.io.masks import target_of
 from prunus.io.original import original_of
 from prunus.learn.examples import Example, by_scan, drawn, example_of, seen_again
 from prunus.learn.labels import INVALID, SOME, UNTOLD

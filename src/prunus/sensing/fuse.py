@@ -14,7 +14,8 @@ import numpy as np
 from prunus.errors import PrunusError
 from prunus.model import Floats, Ints, RigidMotion, RigView
 from prunus.model.arrays import Bytes, cubes
-from prunus.sensing.register import MOVED, TURNED, Fit, fit_of, refined, turn_of
+from prunus.model.rotations import turn_of
+from prunus.sensing.register import MOVED, TURNED, Fit, fit_of, refined
 from prunus.sensing.threads import Threads, threads_of
 from prunus.sensing.views import Seen, seen
 

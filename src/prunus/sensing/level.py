@@ -12,11 +12,15 @@ import numpy as np
 
 from prunus.model import Floats
 from prunus.model.arrays import cubes
+from prunus.model.rotations import turned, upright
 from prunus.sensing.orient import Wood
 
-TILTS = (4.0, 25.0)
-"""The ground is followed when it is tilted by so many degrees, at least and at most."""
-ASKEW = 10.0
+STEEPEST = 25.0
+"""Ground is tilted by so many degrees at most."""
+TILTED = (3.0, 8.0)
+"""The ground is followed when it is tilted by so many degrees along the row, and across it, where
+little of it is in view and the feet of the row behind look like more."""
+ASKEW = 6.0
 """The row is followed when it is so many degrees askew."""
 FLAT = 0.025
 """The ground is a plane but for so many metres to either side."""
@@ -36,7 +40,7 @@ LEVEL = 0.35
 """Wood is level when it rises less than so many metres a metre."""
 BESIDE = math.radians(12)
 """Wood runs along the row within so many radians, about."""
-ALIKE = 0.6
+ALIKE = 0.4
 """So large a share of the level wood runs along the row, or it is not trusted."""
 
 
@@ -48,16 +52,22 @@ def find_turn(xyz: Floats, wood: Wood, rng: np.random.Generator) -> tuple[Floats
     turn, notes = np.eye(3), list[str]()
     xyz = xyz[:: max(1, len(xyz) // LOOKED_AT)]
     up = ground_normal(xyz, rng)
-    tilt = 0.0 if up is None else math.degrees(math.acos(min(1.0, up[2])))
-    if up is not None and TILTS[0] <= tilt <= TILTS[1]:
+    followed = np.zeros(2) if up is None else np.where(_tilts(up) >= TILTED, up[:2], 0.0)
+    if followed.any():
+        up = np.array([*followed, math.sqrt(1 - (followed**2).sum())])
         turn = upright(up)
+        tilt = math.degrees(math.acos(up[2]))
         notes.append(f"levelled by {tilt:.0f} degrees: so far the ground is tilted")
     angle, share = row_angle(wood.turned(turn))
     if abs(math.degrees(angle)) >= ASKEW and share >= ALIKE:
-        c, s = math.cos(angle), math.sin(angle)
-        turn = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) @ turn
+        turn = turned(np.array([0.0, 0.0, -angle])) @ turn
         notes.append(f"turned by {math.degrees(angle):.0f} degrees about Z, to the row")
     return turn, notes
+
+
+def _tilts(up: Floats) -> Floats:
+    """Degrees (2,) by which a direction (3,) leans along the row and across it."""
+    return np.asarray(np.degrees(np.arcsin(np.abs(up[:2]))))
 
 
 def ground_normal(xyz: Floats, rng: np.random.Generator) -> Floats | None:
@@ -69,7 +79,7 @@ def ground_normal(xyz: Floats, rng: np.random.Generator) -> Floats | None:
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     size = np.linalg.norm(normal, axis=1)
     normal *= (np.where(normal[:, 2] < 0, -1, 1) / np.maximum(size, 1e-12))[:, None]
-    fits = (normal[:, 2] > math.cos(math.radians(TILTS[1]))) & (size > BROAD)
+    fits = (normal[:, 2] > math.cos(math.radians(STEEPEST))) & (size > BROAD)
     normal, corners = normal[fits], corners[fits]
     if len(normal) == 0:
         return None
@@ -120,14 +130,3 @@ def _between(angles: Floats, other: Floats | float) -> Floats:
 
 def _beside(angles: Floats, other: Floats | float) -> Floats:
     return np.asarray(np.exp(-0.5 * (_between(angles, other) / BESIDE) ** 2))
-
-
-def upright(up: Floats) -> Floats:
-    """The least rotation (3, 3) that turns a direction (3,) to Z."""
-    axis = np.array([up[1], -up[0], 0.0])
-    sine = float(np.linalg.norm(axis))
-    if sine < 1e-12:
-        return np.eye(3)
-    x, y, z = axis / sine
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.asarray(np.eye(3) + sine * cross + (1 - up[2]) * cross @ cross)

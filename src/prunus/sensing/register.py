@@ -15,6 +15,7 @@ import numpy as np
 
 from prunus.kernels.register import normal_equations, partners, residuals
 from prunus.model import Floats, Ints, RigidMotion
+from prunus.model.rotations import cross, turn_of, turned
 from prunus.sensing.threads import Threads
 
 TURNED = math.radians(1.0)
@@ -116,7 +117,7 @@ def _step(
     for v, (pose, before) in enumerate(zip(poses, nominal, strict=True)):
         own, held = slice(6 * v, 6 * v + 6), threads[v].held
         jacobian = np.eye(6)
-        jacobian[3:, :3] = -_cross(pose.apply(held) - middle)
+        jacobian[3:, :3] = -cross(pose.apply(held) - middle)
         off = np.concatenate([turn_of(pose, before), pose.apply(held) - before.apply(held)])
         matrix[own, own] += jacobian.T @ (weight[:, None] * jacobian)
         right[own] -= jacobian.T @ (weight * off)
@@ -129,27 +130,3 @@ def _moved(pose: RigidMotion, step: Floats, middle: Floats) -> RigidMotion:
     rotation, _ = np.linalg.qr(turn @ pose.rotation)
     rotation *= np.sign((rotation * (turn @ pose.rotation)).sum(axis=0))
     return RigidMotion(rotation, turn @ (pose.translation - middle) + middle + step[3:])
-
-
-def turned(turn: Floats) -> Floats:
-    """The rotation (3, 3) by a rotation vector (3,), radians (Rodrigues)."""
-    angle = float(np.linalg.norm(turn))
-    cross = _cross(turn)
-    if angle < 1e-9:
-        return np.eye(3) + cross
-    bend = (1 - math.cos(angle)) / angle**2
-    return np.asarray(np.eye(3) + math.sin(angle) / angle * cross + bend * cross @ cross)
-
-
-def turn_of(pose: RigidMotion, before: RigidMotion) -> Floats:
-    """The rotation vector (3,), radians, from one pose to another; under half a turn."""
-    rotation = pose.rotation @ before.rotation.T
-    skew = (rotation - rotation.T) / 2
-    sines = np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
-    sine = float(np.linalg.norm(sines))
-    angle = math.atan2(sine, (np.trace(rotation) - 1) / 2)
-    return sines if sine < 1e-9 else sines * (angle / sine)
-
-
-def _cross(v: Floats) -> Floats:
-    return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])

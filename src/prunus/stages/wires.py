@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from prunus.kernels.neighbours import nearest
 from prunus.model import Bools, Floats, Ints
 
 LEVEL = np.cos(np.radians(20))
@@ -23,6 +24,8 @@ THICK = 0.018
 """A wire is straight but for so many metres."""
 BLURRED = 0.035
 """What a camera drew of a wire is so near to it, metres."""
+CROSSES = (0.045, 0.07)
+"""What crosses a wire goes on at least so far from it, metres, within so many of where it lies."""
 APART = 0.80
 """A wire is guessed from two points at least so far apart, metres."""
 BIN = 0.05
@@ -49,9 +52,16 @@ def on_wires(xyz: Floats, along: Floats, rng: np.random.Generator) -> Bools:
         on = wire.near(xyz[left])
         if not _is_wire(xyz[left][on, 0]):
             break
-        found |= wire.near(xyz, BLURRED) & (np.abs(along[:, 0]) >= ALIKE)
+        found |= wire.near(xyz, BLURRED) & ~_crossing(wire, xyz, along)
         left = left[~on]
     return found
+
+
+def _crossing(wire: _Line, xyz: Floats, along: Floats) -> Bools:
+    """Which points (Q, 3) run across a wire, and are not its fringe: wood goes on beside them."""
+    beyond = xyz[~wire.near(xyz, CROSSES[0])]
+    goes_on = nearest(xyz, beyond, CROSSES[1]) >= 0
+    return np.asarray(goes_on & (np.abs(along[:, 0]) < ALIKE))
 
 
 @dataclass(frozen=True, eq=False)
