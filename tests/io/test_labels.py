@@ -97,3 +97,5 @@ def test_a_folder_lists_its_label_files_by_name(path: Path) -> None:
     append_label(root / "another" / "labels.jsonl", HEAD, label(0))
     assert labels_in(root) == [root / "another" / "labels.jsonl", path]
     assert labels_in(path.parent) == [path]
+    path.write_bytes(path.read_bytes()[:20])
+    assert labels_in(path.parent) == [], "it was never begun"

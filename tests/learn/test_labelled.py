@@ -23,7 +23,7 @@ from prunus.learn.labels import INVALID, SOME, UNTOLD, edge_labels  # noqa: E402
 from prunus.learn.net import ContextNet  # noqa: E402
 from prunus.learn.school import Course, lines_of, school  # noqa: E402
 from prunus.learn.start import start_from  # noqa: E402
-from prunus.learn.train import RECIPES, Calibrated, losses, onnx_bytes, predict  # noqa: E402
+from prunus.learn.train import RECIPES, Calibrated, between, losses, onnx_bytes, predict  # noqa: E402
 from prunus.params import Parameters  # noqa: E402
 from prunus.pipeline import skeletonize  # noqa: E402
 from prunus.simulate.orchard import simulate_tree  # noqa: E402
@@ -123,6 +123,26 @@ def test_edges_of_which_nothing_was_told_have_no_part_in_the_loss() -> None:
     assert float(nothing) == float(none) == 0
 
 
+def test_between_two_networks_lie_their_means() -> None:
+    one, other = ContextNet(), ContextNet()
+    ends = [{name: own.clone() for name, own in net.state_dict().items()} for net in (one, other)]
+    for share in (0.0, 1.0, 0.25):
+        net = ContextNet()
+        net.load_state_dict(ends[0])
+        for name, own in between(net, other, share).state_dict().items():
+            if own.is_floating_point():
+                mean = (1 - share) * ends[0][name] + share * ends[1][name]
+                assert torch.allclose(own, mean, atol=1e-6)
+
+
+def test_labels_that_were_all_taken_back_are_no_examples(studio: Path, tmp_path: Path) -> None:
+    path = copytree(studio, tmp_path / "studio") / "tree_000003" / "labels.jsonl"
+    head, *_ = path.read_text().splitlines(keepends=True)
+    path.write_text(head)
+    tree = labelled_tree(path, 0, studio.parent / "orchard")
+    assert (tree.graphs, tree.labels, tree.left_out) == ([], 0, 0)
+
+
 @pytest.mark.parametrize("name", ["ours", "paper"])
 def test_a_network_that_starts_from_a_file_says_what_the_file_says(name: str, studio: Path) -> None:
     recipe = RECIPES[name]()
@@ -153,9 +173,9 @@ def test_labels_alone_and_with_simulated_trees_give_weights(
     monkeypatch.setattr(labelled, "VIEWS", 2)
     weights = tmp_path / "mine.onnx"
     report = school([studio], weights, Course(epochs=1), 1, silently)
-    assert report["from"].endswith("ours.onnx")
+    assert report["from"] == "ours"
     assert sum(report["labels"]) == 2 * LABELS
-    assert "split by edge" in report["notes"][0]
+    assert "split by edge" in report["notes"][-1]
     assert report["before"]["edges"] == report["test"]["edges"] > 0
     assert "with" in lines_of(report)[-1]
     assert json.loads(weights.with_suffix(".json").read_text())["labels"] == report["labels"]

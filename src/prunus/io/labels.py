@@ -114,9 +114,13 @@ def read_labels(path: str | Path) -> Labels:
 
 
 def labels_in(folder: Path) -> list[Path]:
-    """The label files of a folder of trees, NAME/labels.jsonl, by name; its own where it is one."""
+    """The label files of a folder of trees, NAME/labels.jsonl, by name; its own where it is one.
+
+    Those without a whole line were never begun.
+    """
     own = folder / "labels.jsonl"
-    return [own] if own.is_file() else sorted(folder.glob("*/labels.jsonl"))
+    found = [own] if own.is_file() else sorted(folder.glob("*/labels.jsonl"))
+    return [path for path in found if b"\n" in path.read_bytes()]
 
 
 Model = TypeVar("Model", bound=BaseModel)

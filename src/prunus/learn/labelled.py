@@ -80,16 +80,17 @@ def labelled_graphs(
 
     Raises PrunusError where the scan is not found, or no label lies on an edge.
     """
-    path = held.path
+    path, over, graphs = held.path, held.labels, list[tuple[MadeGraph, Ints]]()
+    if not over:
+        return graphs, over
     source = original_of(held.head.input, path.parent, scans)
-    over, graphs = held.labels, list[tuple[MadeGraph, Ints]]()
     for graph in _graphs(source, held.head, path.parent / "mask.ply"):
         if not over:
             break
         category, over = matched(over, graph)
         if (category > UNTOLD).any():
             graphs.append((graph, category))
-    if held.labels and not graphs:
+    if not graphs:
         raise PrunusError(
             f"{path}: none of its {len(held.labels)} labels is on an edge of the candidate graph "
             f"of {source}; expected the version of prunus that it was made with, "

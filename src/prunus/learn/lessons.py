@@ -26,6 +26,10 @@ Watch = Callable[[Iterable[Item], str, int], Iterable[Item]]
 
 FEWEST = 5
 """So many labelled trees are split by tree; fewer by edge."""
+HARD = (
+    "the tables are of labelled edges: where the uncertain ones were asked for first, they are the "
+    "hard ones, and most edges are told better"
+)
 PARTS = ("training", "validation", "test")
 
 
@@ -54,10 +58,14 @@ class Sources:
         """What some folders hold; PrunusError naming one that holds neither."""
         simulated, labelled = list[Path](), list[Path]()
         for folder in folders:
-            labels = labels_in(folder)
+            labels, trees = labels_in(folder), any(folder.glob("*/trees.npz"))
+            if not labels and not trees:
+                raise PrunusError(
+                    f"{folder}: no simulated tree in it and no labels; expected folders as "
+                    "`prunus simulate` writes them, or the studio's with NAME/labels.jsonl"
+                )
             labelled += labels
-            if not labels or any(folder.glob("*/trees.npz")):
-                simulated += scans_in(folder)
+            simulated += scans_in(folder) if trees else []
         return cls(simulated, labelled)
 
 
@@ -98,7 +106,7 @@ def _simulated(
 
 def _labelled(trees: list[LabelledTree], rng: np.random.Generator) -> Lessons:
     """Labelled trees split by tree where there are enough, else by edge, with a warning."""
-    notes = [
+    notes = [HARD] + [
         f"{tree.name}: {tree.left_out} of {tree.labels} labels are of edges of another graph, and "
         "were left out"
         for tree in trees

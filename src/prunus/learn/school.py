@@ -16,7 +16,7 @@ from prunus.learn.examples import Example
 from prunus.learn.lessons import Sources, Watch, lessons_from
 from prunus.learn.tables import measures, table
 from prunus.params import Parameters
-from prunus.stages.networks import shipped_or_own
+from prunus.stages.networks import WEIGHTS, shipped_or_own
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def school(
     report: dict[str, Any] = {
         "edge_net": name, "seed": course.seed, "epochs": recipe.epochs, "trees": lessons.trees,
         "edges": [_edges(own) for own in lessons.sets], "labels": lessons.labels,
-        "from": recipe.start and str(recipe.start), "notes": lessons.notes,
+        "from": _called(recipe.start), "notes": lessons.notes,
     }  # fmt: skip
     if recipe.start is not None:
         net = train.finished(recipe.network(), recipe, validation)
@@ -79,6 +79,13 @@ def school(
     write_bytes(weights, train.onnx_bytes(net, recipe, name, test[0]))
     write_bytes(weights.with_suffix(".json"), json.dumps(report, indent=1).encode())
     return report
+
+
+def _called(start: Path | None) -> str | None:
+    """A network by its name, where it is one that ships."""
+    if start is None:
+        return None
+    return start.stem if start.parent == WEIGHTS else str(start)
 
 
 def lines_of(report: dict[str, Any]) -> list[str]:

@@ -246,8 +246,6 @@ def train(
         optimizer, recipe.rate, total_steps=steps * recipe.epochs + 1
     )
     best, least = copy.deepcopy(net), math.inf
-    if recipe.start is not None:
-        least = validation_loss(net, recipe, validation)
     for _ in range(recipe.epochs):
         net.train()
         for inputs, category in recipe.batches(training, rng):
@@ -282,12 +280,27 @@ def even_weights(examples: list[Example]) -> Tensor:
 def finished(net: nn.Module, recipe: Recipe, validation: list[Example]) -> Calibrated:
     """The network as it ships.
 
-    One that went on from another stays as that was calibrated: the edges that people label are
-    those that it could not tell, of which no stretch can be learned.
+    One that went on from another ends between the two: with 700 labels of scans unlike those
+    that ours learned from that kept all of the gain, and of scans just like those it cost nothing,
+    where all the way cost half a point. It stays calibrated as the other was: the edges that
+    people label are those that it could not tell, of which no stretch can be learned.
     """
     if recipe.start is not None:
-        return Calibrated(net, 1.0, 0.0)
+        return Calibrated(between(recipe.network(), net, LEARNED), 1.0, 0.0)
     return calibrated(net, recipe, validation)
+
+
+LEARNED = 0.6
+"""A network that goes on from another keeps so large a share of what it learned."""
+
+
+@torch.no_grad()
+def between(one: nn.Module, other: nn.Module, share: float) -> nn.Module:
+    """The network whose parameters lie so far from one to the other."""
+    ours, theirs = one.state_dict(), other.state_dict()
+    numbers = [name for name, own in ours.items() if own.is_floating_point()]
+    one.load_state_dict(ours | {n: torch.lerp(ours[n], theirs[n], share) for n in numbers})
+    return one
 
 
 @torch.no_grad()
