@@ -33,6 +33,14 @@ def test_free_points_never_take_the_number_of_a_superpoint() -> None:
     assert (edits(*both).wrong, edits(*both).missing) == (3, 3)
 
 
+def test_a_base_may_stand_lower_than_its_superpoint() -> None:
+    whole = with_free(0)
+    lower = replace(whole, xyz=np.concatenate([whole.xyz[:1] - [[0, 0, 0.1]], whole.xyz[1:]]))
+    both = on_same_nodes(whole, lower)
+    assert both is not None
+    assert edits(*both).ratio == 0
+
+
 def test_trees_on_other_superpoints_have_no_nodes_in_common() -> None:
     one = with_free(0)
     assert on_same_nodes(one, replace(one, xyz=one.xyz + 0.01)) is None

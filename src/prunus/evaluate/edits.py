@@ -60,10 +60,11 @@ def edits(skeleton: Skeleton, corrected: Skeleton) -> Edits:
 def on_same_nodes(one: Skeleton, other: Skeleton) -> tuple[Skeleton, Skeleton] | None:
     """Both with a number for every node: their superpoints', and for free points one by place.
 
-    None where they do not share superpoints: where a number stands in both, so must the place.
+    None where they do not share superpoints: where a number stands in both, so must the place. A
+    base alone may stand lower than its superpoint.
     """
     known = one.superpoint[one.superpoint >= 0], other.superpoint[other.superpoint >= 0]
-    shared = np.intersect1d(*known)
+    shared = np.setdiff1d(np.intersect1d(*known), [one.superpoint[0], other.superpoint[0]])
     apart = _places(one, shared) - _places(other, shared)
     if len(shared) == 0 or np.abs(apart).max() > SAME_PLACE:
         return None

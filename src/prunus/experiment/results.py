@@ -40,6 +40,8 @@ class Orchard:
 
     trees: Sequence[Subject]
     about: str
+    people: bool = False
+    """Whether people corrected them."""
 
     @classmethod
     def simulated(cls, trees: int, setting: Setting, seed: int) -> Orchard:
@@ -58,7 +60,7 @@ class Orchard:
         """The trees in the studio's work folder that are done."""
         own, in_work = corrected_in(folder, scans)
         left = f" Still in work, and left out: {', '.join(in_work)}." if in_work else ""
-        return cls(own, f"{len(own)} trees corrected by people, {folder}.{left} {OWN}")
+        return cls(own, f"{len(own)} trees corrected by people, {folder}.{left} {OWN}", people=True)
 
 
 OWN = (
@@ -82,7 +84,8 @@ def experiment(
     records = list(watch(made, "trees", count))
     trials = [trial for record in records for trial in record["trials"]]
     results: dict[str, Any] = {
-        "about": f"{orchard.about} {draws} draws of points a tree, prunus {__version__}.",
+        "about": f"{orchard.about} Draws of points a tree: {draws}; prunus {__version__}."
+        + (_without(records) if orchard.people else ""),
         "ways": summary(trials),
         "edges": edge_measures(records),
     }
@@ -91,6 +94,21 @@ def experiment(
     write_bytes(folder / "trials.csv", trials_csv(trials))
     write_bytes(folder / "index.html", html_page(results, trials).encode())
     return results
+
+
+def _without(records: list[Record]) -> str:
+    """Which trees have no edits of a person."""
+    names = [
+        record["tree"]
+        for record in records
+        if not any(trial["way"] == BY_HAND for trial in record["trials"])
+    ]
+    if not names:
+        return ""
+    return (
+        f" Without '{BY_HAND}', since no skeleton.json on the same superpoints is beside it: "
+        f"{', '.join(names)}."
+    )
 
 
 def lines_of(results: Record) -> list[str]:
