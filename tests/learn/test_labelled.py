@@ -20,10 +20,11 @@ from prunus.learn import labelled  # noqa: E402
 from prunus.learn.examples import true_wood  # noqa: E402
 from prunus.learn.labelled import labelled_tree, split_by_edge  # noqa: E402
 from prunus.learn.labels import INVALID, SOME, UNTOLD, edge_labels  # noqa: E402
-from prunus.learn.net import ContextNet  # noqa: E402
+from prunus.learn.net import Calibrated, ContextNet  # noqa: E402
+from prunus.learn.recipes import RECIPES  # noqa: E402
 from prunus.learn.school import Course, lines_of, school  # noqa: E402
 from prunus.learn.start import start_from  # noqa: E402
-from prunus.learn.train import RECIPES, Calibrated, between, losses, onnx_bytes, predict  # noqa: E402
+from prunus.learn.train import between, losses, onnx_bytes, predict  # noqa: E402
 from prunus.params import Parameters  # noqa: E402
 from prunus.pipeline import skeletonize  # noqa: E402
 from prunus.simulate.orchard import simulate_tree  # noqa: E402

@@ -15,8 +15,9 @@ from prunus.learn import examples as examples_of  # noqa: E402
 from prunus.learn.examples import Example, example_of, split_by_tree  # noqa: E402
 from prunus.learn.labels import TrueWood, edge_labels  # noqa: E402
 from prunus.learn.net import ContextNet, PaperNet  # noqa: E402
+from prunus.learn.recipes import RECIPES, side_by_side  # noqa: E402
 from prunus.learn.school import Course, school  # noqa: E402
-from prunus.learn.train import RECIPES, calibrated, onnx_bytes, predict, side_by_side, train  # noqa: E402
+from prunus.learn.train import calibrated, onnx_bytes, predict, train  # noqa: E402
 from prunus.model import CandidateGraph  # noqa: E402
 from prunus.params import Parameters  # noqa: E402
 from prunus.simulate.orchard import simulate_tree  # noqa: E402

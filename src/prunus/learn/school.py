@@ -49,12 +49,12 @@ def school(
     went on from another network also `before`, what that one has on the test trees.
     """
     try:
-        from prunus.learn import train
+        from prunus.learn import recipes, train
     except ImportError as error:
         raise PrunusError("training needs torch and onnx: pip install 'prunus[train]'") from error
     sources = Sources.among(folders)
     name = course.edge_net
-    recipe = train.recipe_for(name, course.begins(sources), course.epochs)
+    recipe = recipes.recipe_for(name, course.begins(sources), course.epochs)
     rng = np.random.default_rng(course.seed)
     cover = (Parameters.paper() if name == "paper" else Parameters()).superpoints
     lessons = lessons_from(sources, course.scans, course.seed, jobs, cover, watch, rng)
