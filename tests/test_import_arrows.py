@@ -8,6 +8,7 @@ import prunus
 HOME = Path(prunus.__file__).parent
 FLOORS = [
     {"cli"},
+    {"studio"},
     {"progress", "demo", "convert", "fusing", "batch", "experiment", "isolation", "judge"},
     {"report", "evaluate", "simulate", "learn", "corrections"},
     {"pipeline", "graphs", "intake"},

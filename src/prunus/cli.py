@@ -382,6 +382,53 @@ def experiment(
 
 
 @app.command()
+def studio(
+    path: Annotated[Path, typer.Argument(help="A scan, a skeleton.json, or a folder of them.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="Folder in which the work is kept.")
+    ] = Path("prunus-studio"),
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="The next free one is taken; 0: any.")
+    ] = 8080,
+    host: Annotated[
+        str, typer.Option(help="Address to listen on; other machines need the token then.")
+    ] = "127.0.0.1",
+    token: Annotated[
+        str | None, typer.Option(help="Asked for on the page. [default: random, off this machine]")
+    ] = None,
+    no_open: Annotated[bool, typer.Option("--no-open", help="Open no browser.")] = False,
+    frame: Annotated[
+        Frame, typer.Option(help="Frame of the file; auto goes by the evidence in the cloud.")
+    ] = Frame.AUTO,
+    unit: Annotated[
+        Unit | None, typer.Option(help="Unit of the file. [default: m, checked]")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
+    params: Annotated[
+        Path | None,
+        typer.Option(help="Parameters as TOML, as every run writes it; 'paper': as in the paper."),
+    ] = None,
+) -> None:
+    """Look at trees, clean, correct and label them, on a page in the browser.
+
+    A folder of scans: `prunus studio scans/ -o work`
+
+    On another machine: `ssh -t -L 8080:localhost:8080 there prunus studio scans/ --no-open`
+    """
+    from prunus.corrections import Settings
+    from prunus.studio.start import open_studio
+
+    try:
+        settings = Settings(
+            frame=frame.value, unit=unit and unit.value, seed=seed,
+            params=_parameters(params, None, False),
+        )  # fmt: skip
+        open_studio(path, output, settings, host, port, token, not no_open, typer.echo)
+    except PrunusError as error:
+        _stop(error)
+
+
+@app.command()
 def fuse(
     rig: Annotated[Path, typer.Argument(help="Folder with rig.json, or with *_cloud.ply.")],
     output: Annotated[Path, typer.Option("-o", "--output", help="Cloud to write, as .ply.")],

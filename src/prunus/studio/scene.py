@@ -1,0 +1,169 @@
+"""What is drawn in the scene of one browser: points, skeleton, evidence, and what was picked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from prunus.io.export import COLOURS
+from prunus.model import Floats, Kind, Label
+from prunus.model.arrays import Bytes
+from prunus.report.scene import CLASSES, LEFT_OUT
+from prunus.studio.picture import Picture, Slab, colours_of, thinned
+
+Colour = tuple[int, int, int]
+
+GREY: Colour = (172, 172, 172)
+PICKED: Colour = (230, 30, 160)
+BESIDE: Colour = (250, 170, 215)
+MACHINE: Colour = (150, 120, 60)
+WIDTHS = {Label.TRUNK: 7.0, Label.SUPPORT: 6.0, Label.LEADER: 5.0, Label.SIDE_BRANCH: 4.0}
+"""Pixels."""
+EVIDENCE = {
+    f"candidates {low:.1f} to {min(high, 1):.1f}": (low, high, colour)
+    for low, high, colour in CLASSES
+}
+"""The confidence classes of candidate edges by name: from, up to, colour."""
+LAYERS = ("points", *(label.word for label in Label), "tips", "base", "superpoints", *EVIDENCE,
+          "machine's skeleton")  # fmt: skip
+"""All that can be switched on and off."""
+AT_FIRST = frozenset(LAYERS[:7]) - {"tips"} | {"base"}
+
+
+def colour_of(text: str) -> Colour:
+    """The colour that '#rrggbb' names."""
+    return int(text[1:3], 16), int(text[3:5], 16), int(text[5:7], 16)
+
+
+def palette() -> Bytes:
+    """The colour (7, 3) of each `Kind` of points."""
+    colours = {Kind.TARGET: GREY} | {kind: colour_of(one) for kind, one in LEFT_OUT.items()}
+    return np.array([colours[kind] for kind in Kind], np.uint8)
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What the person wants to see: layers by name, colour and number and size of the points."""
+
+    layers: frozenset[str] = AT_FIRST
+    colour: str = "grey"
+    share: float = 1.0
+    size: float = 0.003
+    others: bool = False
+    slab: Slab = field(default_factory=Slab)
+
+
+class Painter:
+    """Draws pictures into one scene; what is as it was is not sent again."""
+
+    def __init__(self, scene: viser.SceneApi) -> None:
+        self.scene = scene
+        self.drawn: dict[str, tuple[Any, ...]] = {}
+
+    def paint(self, picture: Picture, wishes: Wishes) -> None:
+        """All layers."""
+        self.points(picture, wishes)
+        self.skeleton(picture, wishes)
+        self.evidence(picture, wishes)
+
+    def points(self, picture: Picture, wishes: Wishes) -> None:
+        """The thinned cloud; what is not the tree only where it is wanted."""
+        rows = thinned(len(picture.scan))
+        rows = rows[: max(int(wishes.share * len(rows)), 1)]
+        if picture.kind is not None and not wishes.others:
+            rows = rows[picture.kind[rows] == Kind.TARGET]
+        rows = rows[wishes.slab.holds(picture.scan.xyz[rows])]
+        colours = colours_of(picture, rows, wishes.colour, palette())
+        shown = "points" in wishes.layers
+        self.dots("/points", picture.scan.xyz[rows], colours, wishes.size, shown)
+
+    def skeleton(self, picture: Picture, wishes: Wishes) -> None:
+        """The skeleton by label, its base, and that of the machine behind it."""
+        skeleton = picture.skeleton
+        if skeleton is None:
+            return
+        for label in Label:
+            rows = np.flatnonzero(skeleton.edges_with(label))
+            ends = skeleton.xyz[np.column_stack([skeleton.parent[rows], rows])]
+            shown = label.word in wishes.layers
+            name = f"/skeleton/{label.word}"
+            self.lines(name, ends, COLOURS[label], WIDTHS[label], wishes, shown)
+        self.dots("/base", skeleton.xyz[:1], (204, 0, 0), 0.035, "base" in wishes.layers)
+        if picture.machine is not None:
+            ends = picture.machine.xyz[picture.machine.edges]
+            shown = "machine's skeleton" in wishes.layers
+            self.lines("/machine", ends, MACHINE, 2.5, wishes, shown)
+
+    def evidence(self, picture: Picture, wishes: Wishes) -> None:
+        """Candidate edges by confidence, superpoints and tips."""
+        graph = picture.graph
+        if graph is None:
+            return
+        for name, (low, high, colour) in EVIDENCE.items():
+            chosen = graph.edges[(graph.confidence >= low) & (graph.confidence < high)]
+            shown = name in wishes.layers
+            self.lines(f"/{name}", graph.xyz[chosen], colour_of(colour), 2.0, wishes, shown)
+        inside = wishes.slab.holds(graph.xyz)
+        shown = "superpoints" in wishes.layers
+        self.dots("/superpoints", graph.xyz[inside], (90, 90, 90), 0.014, shown)
+        tips = graph.xyz[graph.tips]
+        self.dots("/tips", tips, (204, 121, 167), 0.03, "tips" in wishes.layers)
+
+    def mark(self, name: str, ends: Floats, colour: Colour, width: float) -> None:
+        """Lines (E, 2, 3) over all else, such as what was picked; none takes them away."""
+        self.lines(f"/mark/{name}", ends, colour, width, Wishes(), True)
+
+    def places(self, name: str, xyz: Floats, colour: Colour, size: float = 0.03) -> None:
+        """Places (Q, 3) such as the stops of a path; none takes them away."""
+        self.dots(f"/mark/{name}", xyz, colour, size, True)
+
+    def lines(
+        self, name: str, ends: Floats, colour: Colour, width: float, wishes: Wishes, shown: bool
+    ) -> None:
+        """Edges (E, 2, 3) of one colour, so many pixels wide, those in the slab."""
+        held = ends[wishes.slab.holds_edges(ends)].astype(np.float32)
+        if self._is_new(name, held, (colour, width), len(held) > 0 and shown):
+            self.scene.add_line_segments(
+                name, held, colour, thickness=width, thickness_units="screen"
+            )
+
+    def dots(
+        self, name: str, xyz: Floats, colours: Bytes | Colour, size: float, shown: bool
+    ) -> None:
+        """Points (Q, 3) of one colour or of colours (Q, 3), of so many metres."""
+        held, colour = xyz.astype(np.float32), np.asarray(colours, np.uint8)
+        if self._is_new(name, held, (colour.tobytes(), size), len(held) > 0 and shown):
+            self.scene.add_point_cloud(
+                name, held, colour, point_size=size, point_shape="circle", point_shading="flat",
+                precision="float32",
+            )  # fmt: skip
+
+    def clear(self) -> None:
+        """Take all away."""
+        for name in list(self.drawn):
+            self._remove(name)
+
+    def _is_new(self, name: str, xyz: NDArray[np.float32], rest: Any, wanted: bool) -> bool:
+        """Whether a node must be sent; one that is not wanted is taken away."""
+        if not wanted:
+            self._remove(name)
+            return False
+        looks = (xyz.tobytes(), rest)
+        if self.drawn.get(name) == looks:
+            return False
+        self.drawn[name] = looks
+        return True
+
+    def _remove(self, name: str) -> None:
+        if self.drawn.pop(name, None) is not None:
+            self.scene.remove_by_name(name)
+
+
+def without(wishes: Wishes, layer: str, shown: bool) -> Wishes:
+    """The same wishes with a layer switched on or off."""
+    layers = wishes.layers | {layer} if shown else wishes.layers - {layer}
+    return replace(wishes, layers=layers)
