@@ -120,14 +120,14 @@ class Desk:
     def paint(self) -> None:
         """All layers, the legend and what is picked."""
         if self.picture is not None:
-            self.painter.paint(self.picture, self.show.wishes)
+            self.painter.paint(self.picture, self.show.shown)
             self.legend.content = legend(self.picture)
             self._paint_picked()
 
     def paint_points(self) -> None:
         """The points only."""
         if self.picture is not None:
-            self.painter.points(self.picture, self.show.wishes)
+            self.painter.points(self.picture, self.show.shown)
 
     def view(self, name: str) -> None:
         """Look at the tree from the front, the side or the top."""

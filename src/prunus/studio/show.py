@@ -24,6 +24,7 @@ class Show:
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
         self.wishes = Wishes()
+        self.lent: frozenset[str] = frozenset()
         self.boxes: dict[str, viser.GuiCheckboxHandle] = {}
 
     def build(self) -> None:
@@ -42,6 +43,17 @@ class Show:
         with gui.add_folder("Evidence", expand_by_default=False):
             for layer in LAYERS[7:]:
                 self._box(layer)
+
+    @property
+    def shown(self) -> Wishes:
+        """What is wished for, with the layers that the tool in hand needs."""
+        return replace(self.wishes, layers=self.wishes.layers | self.lent)
+
+    def lend(self, *layers: str) -> None:
+        """Show layers as long as a tool needs them; none takes them back."""
+        if self.lent != frozenset(layers):
+            self.lent = frozenset(layers)
+            self.desk.paint()
 
     def keys(self) -> list[Key]:
         """The views."""

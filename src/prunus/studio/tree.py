@@ -8,7 +8,7 @@ from collections.abc import Callable
 from prunus.corrections import Act, Settings, State, Work, branch_names, status_of
 from prunus.errors import PrunusError
 from prunus.evaluate.edits import Edits, edits
-from prunus.intake import open_scan
+from prunus.intake import Scan
 from prunus.model import PointCloud, Skeleton
 from prunus.studio.picture import Picture
 from prunus.studio.shelf import Item
@@ -115,11 +115,7 @@ class Tree:
     def _open(self) -> None:
         """Read the file, show its points, then run the chain and replay what was done before."""
         try:
-            scan = open_scan(self.item.source, self.settings.frame, self.settings.unit)
-            with self.lock:
-                self.cloud = scan.cloud
-            self._tell()
-            work = Work.open(self.item.source, self.item.folder, self.settings)
+            work = Work.open(self.item.source, self.item.folder, self.settings, seen=self._seen)
             with self.lock:
                 self.work = work
         except PrunusError as error:
@@ -129,6 +125,11 @@ class Tree:
             with self.lock:
                 self.opening = False
                 self._close_if_alone()
+        self._tell()
+
+    def _seen(self, scan: Scan) -> None:
+        with self.lock:
+            self.cloud = scan.cloud
         self._tell()
 
     def _close_if_alone(self) -> None:

@@ -182,6 +182,7 @@ class Correct(Mode):
     def _ask(self, tool: str) -> None:
         self.tool = tool
         self.asked.content = block(quiet(ASKS[tool]))
+        self.desk.show.lend(*(["superpoints"] if tool in ("path", "base") else []))
         self.redraw()
 
     def _group(

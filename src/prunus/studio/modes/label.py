@@ -164,6 +164,7 @@ def queue_of(work: Work) -> Queue:
             "seed": state.result.seed,
             "frame": work.settings.frame,
             "unit": work.settings.unit,
+            "base": work.base,
             "version_of_prunus": __version__,
         }
     )
