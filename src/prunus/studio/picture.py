@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,9 +53,12 @@ class Picture:
         return xyz.min(axis=0), xyz.max(axis=0)
 
 
+@lru_cache(maxsize=4)
 def thinned(points: int, most: int = MOST_POINTS) -> Ints:
     """At most so many rows of a cloud in random order, the same each time; any start is even."""
-    return np.random.default_rng(0).permutation(points)[:most]
+    rows = np.random.default_rng(0).permutation(points)[:most].copy()
+    rows.setflags(write=False)
+    return rows
 
 
 @dataclass(frozen=True)

@@ -57,12 +57,22 @@ class Wishes:
     slab: Slab = field(default_factory=Slab)
 
 
+@dataclass
+class Drawn:
+    """A node of the scene as the browser has it."""
+
+    places: bytes
+    form: tuple[object, ...]
+    colours: bytes
+    handle: Any
+
+
 class Painter:
     """Draws pictures into one scene; what is as it was is not sent again."""
 
     def __init__(self, scene: viser.SceneApi) -> None:
         self.scene = scene
-        self.drawn: dict[str, tuple[Any, ...]] = {}
+        self.drawn: dict[str, Drawn] = {}
 
     def paint(self, picture: Picture, wishes: Wishes) -> None:
         """All layers."""
@@ -126,41 +136,49 @@ class Painter:
     ) -> None:
         """Edges (E, 2, 3) of one colour, so many pixels wide, those in the slab."""
         held = ends[wishes.slab.holds_edges(ends)].astype(np.float32)
-        if self._is_new(name, held, (colour, width), len(held) > 0 and shown):
-            self.scene.add_line_segments(
+        if not shown or len(held) == 0:
+            self._remove(name)
+        elif not self._stands(name, held, (colour, width)):
+            handle = self.scene.add_line_segments(
                 name, held, colour, thickness=width, thickness_units="screen"
             )
+            self.drawn[name] = Drawn(held.tobytes(), (colour, width), b"", handle)
 
     def dots(
         self, name: str, xyz: Floats, colours: Bytes | Colour, size: float, shown: bool
     ) -> None:
         """Points (Q, 3) of one colour or of colours (Q, 3), of so many metres."""
         held, colour = xyz.astype(np.float32), np.asarray(colours, np.uint8)
-        if self._is_new(name, held, (colour.tobytes(), size), len(held) > 0 and shown):
-            self.scene.add_point_cloud(
+        if not shown or len(held) == 0:
+            self._remove(name)
+        elif self._stands(name, held, (colour.shape, size)):
+            self._recolour(self.drawn[name], colour)
+        else:
+            handle = self.scene.add_point_cloud(
                 name, held, colour, point_size=size, point_shape="circle", point_shading="flat",
                 precision="float32",
             )  # fmt: skip
+            self.drawn[name] = Drawn(held.tobytes(), (colour.shape, size), colour.tobytes(), handle)
 
     def clear(self) -> None:
         """Take all away."""
         for name in list(self.drawn):
             self._remove(name)
 
-    def _is_new(self, name: str, xyz: NDArray[np.float32], rest: Any, wanted: bool) -> bool:
-        """Whether a node must be sent; one that is not wanted is taken away."""
-        if not wanted:
-            self._remove(name)
-            return False
-        looks = (xyz.tobytes(), rest)
-        if self.drawn.get(name) == looks:
-            return False
-        self.drawn[name] = looks
-        return True
+    def _stands(self, name: str, xyz: NDArray[np.float32], form: tuple[object, ...]) -> bool:
+        """Whether a node is drawn at these places, in this form."""
+        drawn = self.drawn.get(name)
+        return drawn is not None and drawn.form == form and drawn.places == xyz.tobytes()
+
+    def _recolour(self, drawn: Drawn, colour: Bytes) -> None:
+        if drawn.colours != colour.tobytes():
+            drawn.colours = colour.tobytes()
+            drawn.handle.colors = colour
 
     def _remove(self, name: str) -> None:
-        if self.drawn.pop(name, None) is not None:
-            self.scene.remove_by_name(name)
+        drawn = self.drawn.pop(name, None)
+        if drawn is not None:
+            drawn.handle.remove()
 
 
 def without(wishes: Wishes, layer: str, shown: bool) -> Wishes:
