@@ -54,7 +54,7 @@ class Desk:
         with self.lock:
             self._build()
             self.client.scene.on_click()(self._clicked)
-            self.client.camera.on_update(lambda camera: self._fit())
+            self.client.camera.on_update(lambda camera: self._moved())
             self.choose(self.modes[0].name)
             self.tree.watch(self.refresh)
 
@@ -141,13 +141,16 @@ class Desk:
             self.client.camera.position = position
             self.client.camera.look_at = aim
 
-    def _fit(self) -> None:
-        """View again as before where only the window has changed since."""
+    def _moved(self) -> None:
+        """The camera was moved; view again as before where only the window has changed."""
         with self.lock:
-            if self.viewed is None or self.closed:
+            if self.closed:
+                return
+            eye = self.eye
+            self.painter.stand_at(eye.position)
+            if self.viewed is None:
                 return
             name, position, size = self.viewed
-            eye = self.eye
             stands = np.allclose(eye.position, position, atol=1e-3)
             if stands and size != (eye.width, eye.height):
                 self.view(name)

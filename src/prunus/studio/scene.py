@@ -21,6 +21,9 @@ GREY: Colour = (172, 172, 172)
 PICKED: Colour = (230, 30, 160)
 BESIDE: Colour = (250, 170, 215)
 MACHINE: Colour = (150, 120, 60)
+NEARER = 0.04
+"""By this share of its distance all but the scan is drawn nearer to the eye."""
+POINTS = "/points"
 WIDTHS = {Label.TRUNK: 7.0, Label.SUPPORT: 6.0, Label.LEADER: 5.0, Label.SIDE_BRANCH: 4.0}
 """Pixels."""
 EVIDENCE = {
@@ -73,6 +76,15 @@ class Painter:
     def __init__(self, scene: viser.SceneApi) -> None:
         self.scene = scene
         self.drawn: dict[str, Drawn] = {}
+        self.front = scene.add_frame("/front", show_axes=False)
+
+    def stand_at(self, eye: Floats) -> None:
+        """Draw for an eye (3,): all but the scan a little nearer to it, looking the same.
+
+        What is scaled about the eye is seen where it was, but the points of the wood around a
+        branch no longer hide it.
+        """
+        self.front.position = NEARER * eye
 
     def paint(self, picture: Picture, wishes: Wishes) -> None:
         """All layers."""
@@ -89,7 +101,7 @@ class Painter:
         rows = rows[wishes.slab.holds(picture.scan.xyz[rows])]
         colours = colours_of(picture, rows, wishes.colour, palette())
         shown = "points" in wishes.layers
-        self.dots("/points", picture.scan.xyz[rows], colours, wishes.size, shown)
+        self.dots(POINTS, picture.scan.xyz[rows], colours, wishes.size, shown)
 
     def skeleton(self, picture: Picture, wishes: Wishes) -> None:
         """The skeleton by label, its base, and that of the machine behind it."""
@@ -140,7 +152,12 @@ class Painter:
             self._remove(name)
         elif not self._stands(name, held, (colour, width)):
             handle = self.scene.add_line_segments(
-                name, held, colour, thickness=width, thickness_units="screen"
+                f"/front{name}",
+                held,
+                colour,
+                thickness=width,
+                thickness_units="screen",
+                scale=1 - NEARER,
             )
             self.drawn[name] = Drawn(held.tobytes(), (colour, width), b"", handle)
 
@@ -154,9 +171,10 @@ class Painter:
         elif self._stands(name, held, (colour.shape, size)):
             self._recolour(self.drawn[name], colour)
         else:
+            node, scale = (name, 1.0) if name == POINTS else (f"/front{name}", 1 - NEARER)
             handle = self.scene.add_point_cloud(
-                name, held, colour, point_size=size, point_shape="circle", point_shading="flat",
-                precision="float32",
+                node, held, colour, point_size=size, point_shape="circle", point_shading="flat",
+                precision="float32", scale=scale,
             )  # fmt: skip
             self.drawn[name] = Drawn(held.tobytes(), (colour.shape, size), colour.tobytes(), handle)
 
