@@ -11,9 +11,27 @@ from numpy.typing import NDArray
 from prunus.measure import Branch, branch_of_rows, branches
 from prunus.model import Bools, Floats, Ints, Kind, PointCloud, SeededGraph, Skeleton
 from prunus.model.arrays import Bytes
+from prunus.report.scene import LEFT_OUT
 
 MOST_POINTS = 150_000
 """More points of a cloud are not sent to a browser."""
+
+
+Colour = tuple[int, int, int]
+
+
+def colour_of(text: str) -> Colour:
+    """The colour that '#rrggbb' names."""
+    return int(text[1:3], 16), int(text[3:5], 16), int(text[5:7], 16)
+
+
+GREY: Colour = (172, 172, 172)
+KINDS: dict[Kind, Colour] = {
+    Kind.TARGET: (90, 90, 90),
+    **{kind: colour_of(LEFT_OUT[kind]) for kind in Kind if kind in LEFT_OUT},
+    Kind.STRAY: (240, 160, 210),
+}
+"""The colour of each kind of points, in the order of the kinds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,10 +95,10 @@ class Slab:
         return self.holds(ends.mean(axis=1))
 
 
-def colours_of(picture: Picture, rows: Ints, by: str, palette: Bytes) -> Bytes:
-    """The colour (R, 3) of some points: their own ('rgb'), by 'class' (palette (7, 3)), or grey."""
+def colours_of(picture: Picture, rows: Ints, by: str) -> Bytes:
+    """The colour (R, 3) of some points: their own ('rgb'), by 'class', or grey."""
     if by == "rgb" and picture.scan.rgb is not None:
         return picture.scan.rgb[rows]
     if by == "class" and picture.kind is not None:
-        return np.asarray(palette[picture.kind[rows]])
-    return np.broadcast_to(palette[Kind.TARGET], (len(rows), 3))
+        return np.array(list(KINDS.values()), np.uint8)[picture.kind[rows]]
+    return np.broadcast_to(np.array(GREY, np.uint8), (len(rows), 3))

@@ -12,12 +12,9 @@ from numpy.typing import NDArray
 from prunus.io.export import COLOURS
 from prunus.model import Floats, Kind, Label
 from prunus.model.arrays import Bytes
-from prunus.report.scene import CLASSES, LEFT_OUT
-from prunus.studio.picture import Picture, Slab, colours_of, thinned
+from prunus.report.scene import CLASSES
+from prunus.studio.picture import Colour, Picture, Slab, colour_of, colours_of, thinned
 
-Colour = tuple[int, int, int]
-
-GREY: Colour = (172, 172, 172)
 PICKED: Colour = (230, 30, 160)
 BESIDE: Colour = (250, 170, 215)
 MACHINE: Colour = (150, 120, 60)
@@ -35,17 +32,6 @@ LAYERS = ("points", *(label.word for label in Label), "tips", "base", "superpoin
           "machine's skeleton")  # fmt: skip
 """All that can be switched on and off."""
 AT_FIRST = frozenset(LAYERS[:7]) - {"tips"} | {"base"}
-
-
-def colour_of(text: str) -> Colour:
-    """The colour that '#rrggbb' names."""
-    return int(text[1:3], 16), int(text[3:5], 16), int(text[5:7], 16)
-
-
-def palette() -> Bytes:
-    """The colour (7, 3) of each `Kind` of points."""
-    colours = {Kind.TARGET: GREY} | {kind: colour_of(one) for kind, one in LEFT_OUT.items()}
-    return np.array([colours[kind] for kind in Kind], np.uint8)
 
 
 @dataclass(frozen=True)
@@ -99,7 +85,7 @@ class Painter:
         if picture.kind is not None and not wishes.others:
             rows = rows[picture.kind[rows] == Kind.TARGET]
         rows = rows[wishes.slab.holds(picture.scan.xyz[rows])]
-        colours = colours_of(picture, rows, wishes.colour, palette())
+        colours = colours_of(picture, rows, wishes.colour)
         shown = "points" in wishes.layers
         self.dots(POINTS, picture.scan.xyz[rows], colours, wishes.size, shown)
 

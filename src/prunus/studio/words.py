@@ -9,7 +9,7 @@ import numpy as np
 
 from prunus.io.export import COLOURS
 from prunus.model import Floats, Label
-from prunus.studio.picture import Picture
+from prunus.studio.picture import KINDS, Picture
 
 STYLE = "padding:2px 12px 8px;font-size:13px;line-height:1.45;overflow-wrap:anywhere"
 
@@ -31,7 +31,11 @@ def loud(text: str) -> str:
 
 def dot(label: Label) -> str:
     """The colour of a label."""
-    colour = "rgb({},{},{})".format(*COLOURS[label])
+    return _dot(COLOURS[label])
+
+
+def _dot(rgb: tuple[int, int, int]) -> str:
+    colour = "rgb({},{},{})".format(*rgb)
     return (
         '<span style="display:inline-block;width:11px;height:11px;border-radius:6px;'
         f'margin-right:6px;background:{colour}"></span>'
@@ -52,6 +56,15 @@ def legend(picture: Picture) -> str:
         told = f"{len(own)}, {metres:.1f} m" if picture.skeleton is not None else ""
         rows.append(f"{dot(label)}{word_of(label)} {quiet(told)}")
     return block(*rows)
+
+
+def kinds(picture: Picture) -> str:
+    """The kinds of points with their colours, and how many each has."""
+    if picture.kind is None:
+        return ""
+    counts = np.bincount(picture.kind, minlength=len(KINDS)).tolist()
+    rows = zip(KINDS.items(), counts, strict=True)
+    return block(*(f"{_dot(c)}{k.name.lower()} {quiet(f'{n:,}')}" for (k, c), n in rows))
 
 
 def card(picture: Picture, row: int) -> str:

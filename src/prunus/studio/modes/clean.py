@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import viser
 
-from prunus.corrections import Brush, Class, Component, Lasso, Mark, Rebuild, Slab
+from prunus.corrections import Brush, Class, Component, Lasso, Mark, PickBase, Rebuild, Slab
 from prunus.corrections.where import Shape
 from prunus.errors import PrunusError
 from prunus.model import Kind
@@ -17,13 +17,14 @@ from prunus.studio.modes.history import History
 from prunus.studio.modes.mode import Key, Mode, put, watch
 from prunus.studio.picking import Ray, first_point
 from prunus.studio.scene import PICKED, Wishes
-from prunus.studio.words import block, quiet
+from prunus.studio.words import block, kinds, quiet
 
 KINDS = tuple(kind.name.lower() for kind in Kind)
 TOOLS = {
     "box": "Hold Shift and drag a box over the points.",
     "lasso": "Click the corners around the points; Enter closes it, Escape gives it up.",
     "brush": "Click points; all around each is marked.",
+    "base": "Click where the trunk of the tree meets the ground; then build it again.",
     "piece": "Click a point; all that hangs together with it is marked.",
 }
 """What a click is asked for, by tool."""
@@ -58,6 +59,7 @@ class Clean(Mode):
         again = gui.add_button("Build the tree again", hint="From the points that are target now")
         again.on_click(lambda event: self.desk.try_to(self._rebuild))
         self.history.build()
+        self.counts = gui.add_html("")
 
     def keys(self) -> list[Key]:
         """The kinds, the lasso, undo."""
@@ -81,19 +83,29 @@ class Clean(Mode):
         if self.before is not None:
             self.desk.show.want(self.before)
         self.before = None
+        self.redraw()
         self._ask()
+
+    def redraw(self) -> None:
+        """How many points each kind has, and the base that was picked for the next time."""
+        if self.desk.picture is not None:
+            self.counts.content = kinds(self.desk.picture)
+        state = self.desk.tree.state
+        picked = state is not None and state.base is not None and self.before is not None
+        base = state.base[None] if picked else np.zeros((0, 3))  # type: ignore[union-attr,index]
+        self.desk.painter.places("base", base, PICKED, 0.05)
 
     def clicked(self, ray: Ray, screen: tuple[float, float]) -> None:
         """What the tool asked for."""
         tool = self.tool.value
         if tool == "lasso":
             self._corner(screen)
-        elif tool in ("brush", "piece"):
-            place = self._point(ray)
-            if tool == "brush":
-                self._mark(Brush((place,), self.radius.value / 100))
-            else:
-                self._mark(Component(place, self.gap.value / 100))
+        elif tool == "brush":
+            self._mark(Brush((self._point(ray),), self.radius.value / 100))
+        elif tool == "piece":
+            self._mark(Component(self._point(ray), self.gap.value / 100))
+        elif tool == "base":
+            self.desk.act(PickBase(self._point(ray)))
 
     def _point(self, ray: Ray) -> tuple[float, float, float]:
         """The point of the scan at a ray, in the frame of the file."""
