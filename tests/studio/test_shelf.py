@@ -46,3 +46,8 @@ def test_the_work_is_not_kept_upon_what_it_is_about(tmp_path: Path) -> None:
 def test_an_empty_folder_holds_nothing_to_open(tmp_path: Path) -> None:
     with pytest.raises(PrunusError, match="no point cloud"):
         items_in(tmp_path, tmp_path / "work")
+
+
+def test_a_path_that_is_not_there_is_said(tmp_path: Path) -> None:
+    with pytest.raises(PrunusError, match="cannot be read"):
+        items_in(tmp_path / "gone.ply", tmp_path / "work")

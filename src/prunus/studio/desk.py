@@ -222,14 +222,14 @@ class Desk:
         picture = self.picture
         row = None if picture is None else picture.row(self.picked)
         if picture is None or picture.skeleton is None or not row:
-            self.painter.mark("branch", np.zeros((0, 2, 3)), BESIDE, 8)
-            self.painter.mark("edge", np.zeros((0, 2, 3)), PICKED, 10)
+            self.painter.halo(np.zeros((0, 2, 3)), BESIDE, 14)
+            self.painter.mark("edge", np.zeros((0, 2, 3)), PICKED, 7)
             self.card.content = block(quiet("Click a branch to read of it.")) if picture else ""
             return
         xyz, rows = picture.skeleton.xyz, picture.branches[int(picture.owner[row])].rows
         run = np.stack([xyz[rows[:-1]], xyz[rows[1:]]], axis=1)
-        self.painter.mark("branch", run, BESIDE, 10)
-        self.painter.mark("edge", xyz[[[picture.skeleton.parent[row], row]]], PICKED, 12)
+        self.painter.halo(run, BESIDE, 14)
+        self.painter.mark("edge", xyz[[[picture.skeleton.parent[row], row]]], PICKED, 7)
         self.card.content = card(picture, row)
 
     def _frame(self) -> None:

@@ -18,9 +18,9 @@ from prunus.studio.picture import Colour, Picture, Slab, colour_of, colours_of, 
 PICKED: Colour = (230, 30, 160)
 BESIDE: Colour = (250, 170, 215)
 MACHINE: Colour = (150, 120, 60)
-NEARER = 0.04
-"""By this share of its distance all but the scan is drawn nearer to the eye."""
-POINTS = "/points"
+POINTS = "/points/scan"
+NEARER = {"/points": 0.0, "/halo": 0.035, "/front": 0.04, "/mark": 0.05}
+"""By this share of its distance each sheet of the scene is drawn nearer to the eye."""
 WIDTHS = {Label.TRUNK: 7.0, Label.SUPPORT: 6.0, Label.LEADER: 5.0, Label.SIDE_BRANCH: 4.0}
 """Pixels."""
 EVIDENCE = {
@@ -46,6 +46,11 @@ class Wishes:
     slab: Slab = field(default_factory=Slab)
 
 
+def nearer(name: str) -> float:
+    """How much nearer to the eye a node is drawn, by the sheet that its name begins with."""
+    return NEARER[f"/{name.split('/')[1]}"]
+
+
 @dataclass
 class Drawn:
     """A node of the scene as the browser has it."""
@@ -62,7 +67,7 @@ class Painter:
     def __init__(self, scene: viser.SceneApi) -> None:
         self.scene = scene
         self.drawn: dict[str, Drawn] = {}
-        self.front = scene.add_frame("/front", show_axes=False)
+        self.sheets = {name: scene.add_frame(name, show_axes=False) for name in NEARER}
 
     def stand_at(self, eye: Floats) -> None:
         """Draw for an eye (3,): all but the scan a little nearer to it, looking the same.
@@ -70,7 +75,8 @@ class Painter:
         What is scaled about the eye is seen where it was, but the points of the wood around a
         branch no longer hide it.
         """
-        self.front.position = NEARER * eye
+        for name, sheet in self.sheets.items():
+            sheet.position = NEARER[name] * eye
 
     def paint(self, picture: Picture, wishes: Wishes) -> None:
         """All layers."""
@@ -98,13 +104,13 @@ class Painter:
             rows = np.flatnonzero(skeleton.edges_with(label))
             ends = skeleton.xyz[np.column_stack([skeleton.parent[rows], rows])]
             shown = label.word in wishes.layers
-            name = f"/skeleton/{label.word}"
+            name = f"/front/{label.word}"
             self.lines(name, ends, COLOURS[label], WIDTHS[label], wishes, shown)
-        self.dots("/base", skeleton.xyz[:1], (204, 0, 0), 0.035, "base" in wishes.layers)
+        self.dots("/front/base", skeleton.xyz[:1], (204, 0, 0), 0.035, "base" in wishes.layers)
         if picture.machine is not None:
             ends = picture.machine.xyz[picture.machine.edges]
             shown = "machine's skeleton" in wishes.layers
-            self.lines("/machine", ends, MACHINE, 2.5, wishes, shown)
+            self.lines("/front/machine", ends, MACHINE, 2.5, wishes, shown)
 
     def evidence(self, picture: Picture, wishes: Wishes) -> None:
         """Candidate edges by confidence, superpoints and tips."""
@@ -114,16 +120,20 @@ class Painter:
         for name, (low, high, colour) in EVIDENCE.items():
             chosen = graph.edges[(graph.confidence >= low) & (graph.confidence < high)]
             shown = name in wishes.layers
-            self.lines(f"/{name}", graph.xyz[chosen], colour_of(colour), 2.0, wishes, shown)
+            self.lines(f"/front/{name}", graph.xyz[chosen], colour_of(colour), 2.0, wishes, shown)
         inside = wishes.slab.holds(graph.xyz)
         shown = "superpoints" in wishes.layers
-        self.dots("/superpoints", graph.xyz[inside], (90, 90, 90), 0.014, shown)
+        self.dots("/front/superpoints", graph.xyz[inside], (90, 90, 90), 0.014, shown)
         tips = graph.xyz[graph.tips]
-        self.dots("/tips", tips, (204, 121, 167), 0.03, "tips" in wishes.layers)
+        self.dots("/front/tips", tips, (204, 121, 167), 0.03, "tips" in wishes.layers)
 
     def mark(self, name: str, ends: Floats, colour: Colour, width: float) -> None:
         """Lines (E, 2, 3) over all else, such as what was picked; none takes them away."""
         self.lines(f"/mark/{name}", ends, colour, width, Wishes(), True)
+
+    def halo(self, ends: Floats, colour: Colour, width: float) -> None:
+        """Lines (E, 2, 3) behind the skeleton, around what was picked; none takes them away."""
+        self.lines("/halo/picked", ends, colour, width, Wishes(), True)
 
     def places(self, name: str, xyz: Floats, colour: Colour, size: float = 0.03) -> None:
         """Places (Q, 3) such as the stops of a path; none takes them away."""
@@ -138,13 +148,9 @@ class Painter:
             self._remove(name)
         elif not self._stands(name, held, (colour, width)):
             handle = self.scene.add_line_segments(
-                f"/front{name}",
-                held,
-                colour,
-                thickness=width,
-                thickness_units="screen",
-                scale=1 - NEARER,
-            )
+                name, held, colour, thickness=width, thickness_units="screen",
+                scale=1 - nearer(name),
+            )  # fmt: skip
             self.drawn[name] = Drawn(held.tobytes(), (colour, width), b"", handle)
 
     def dots(
@@ -157,10 +163,9 @@ class Painter:
         elif self._stands(name, held, (colour.shape, size)):
             self._recolour(self.drawn[name], colour)
         else:
-            node, scale = (name, 1.0) if name == POINTS else (f"/front{name}", 1 - NEARER)
             handle = self.scene.add_point_cloud(
-                node, held, colour, point_size=size, point_shape="circle", point_shading="flat",
-                precision="float32", scale=scale,
+                name, held, colour, point_size=size, point_shape="circle", point_shading="flat",
+                precision="float32", scale=1 - nearer(name),
             )  # fmt: skip
             self.drawn[name] = Drawn(held.tobytes(), (colour.shape, size), colour.tobytes(), handle)
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from prunus.errors import PrunusError
 from prunus.io.inputs import clouds_in, is_one, names_of, source_of
+from prunus.io.safely import check_readable
 
 SKELETON = "skeleton.json"
 
@@ -43,6 +44,7 @@ def items_in(path: Path, output: Path) -> list[Item]:
 def _sources(path: Path) -> list[Path]:
     """The inputs of a path, clouds first."""
     if path.suffix.lower() == ".json" or not path.is_dir():
+        check_readable(source_of(path).path)
         return [path]
     try:
         if is_one(path):
