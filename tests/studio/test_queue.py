@@ -3,8 +3,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from prunus.corrections import Brush, Mark, PickBase, Rebuild, Work
+from prunus.errors import PrunusError
 from prunus.io.labels import LabelHead, read_labels
-from prunus.model import CandidateGraph, PointCloud, RigidMotion, ScoredGraph, Superpoints
+from prunus.learn.labelled import labelled_graphs
+from prunus.model import CandidateGraph, Kind, PointCloud, RigidMotion, ScoredGraph, Superpoints
+from prunus.studio.modes.label import queue_of
 from prunus.studio.queue import Queue
 
 SURE = [0.9, 0.52, 0.1, 0.4]
@@ -61,3 +65,26 @@ def test_one_goes_back_changes_ones_mind_and_takes_it_back(tmp_path: Path) -> No
     assert queue(tmp_path).given == {}
     asked.skip()
     assert asked.edge == 3
+
+
+def test_edges_of_a_tree_that_was_cleaned_are_learned_from_too(
+    orchard: Path, tmp_path: Path
+) -> None:
+    with Work.open(orchard / "oak.ply", tmp_path / "oak") as work:
+        asked = queue_of(work)
+        assert asked.graph.confidence.min() < work.state.result.graph.confidence.min()
+        asked.say(True, "leader")
+        xyz = work.state.scan.to_input.apply(work.state.scan.xyz)
+        foot, tip = (tuple(xyz[row].tolist()) for row in (xyz[:, 2].argmin(), xyz[:, 2].argmax()))
+        work.do(PickBase(foot))
+        work.do(Rebuild())
+        with pytest.raises(PrunusError, match="from another base"):
+            queue_of(work)
+        work.undo()
+        work.undo()
+        work.do(Mark(Brush((tip,), 0.2), Kind.STRAY))
+        work.do(Rebuild())
+        queue_of(work).say(False, None)
+    held = read_labels(tmp_path / "oak" / "labels.jsonl")
+    graphs, over = labelled_graphs(held, orchard)
+    assert (len(graphs), over) == (2, [])

@@ -14,7 +14,10 @@ from prunus.corrections import Rebuild, Work
 from prunus.errors import PrunusError
 from prunus.io.labels import CATEGORIES, Category, LabelHead
 from prunus.model import ScoredGraph
+from prunus.stages.candidates import find_candidates
+from prunus.stages.confidence import score_edges
 from prunus.stages.images import edge_images
+from prunus.stages.networks import NetworkScorer
 from prunus.studio.modes.mode import Key, Mode
 from prunus.studio.picking import Ray, nearest_edge
 from prunus.studio.queue import Queue
@@ -153,24 +156,28 @@ class Label(Mode):
 
 
 def queue_of(work: Work) -> Queue:
-    """The queue of a tree that is open; PrunusError where its graph is not that of the scan."""
+    """The queue of a tree that is open: all candidate edges, those too doubtful to search in too.
+
+    Raises PrunusError where training could not make the graph again.
+    """
     state = work.state
-    if any(isinstance(act, Rebuild) for act in work.acts[: work.position]):
-        raise PrunusError("the tree was built again from marked points; undo that to label edges")
+    rebuilt = any(isinstance(act, Rebuild) for act in work.acts[: work.position])
+    if rebuilt and not state.marked:
+        raise PrunusError("the tree was built again from another base; undo that to label edges")
     head = LabelHead.model_validate(
         {
             "input": work.scan.record,
-            "params": state.result.params.model_dump(),
-            "seed": state.result.seed,
+            "params": work.settings.params.model_dump(),
+            "seed": work.settings.seed,
             "frame": work.settings.frame,
             "unit": work.settings.unit,
             "base": work.base,
             "version_of_prunus": __version__,
         }
     )
-    return Queue.of(
-        state.result.graph.scored, state.scan.to_input, work.folder / "labels.jsonl", head
-    )
+    scorer = NetworkScorer.shipped(work.settings.params.confidence.edge_net)
+    every = score_edges(find_candidates(state.result.graph.superpoints), scorer)
+    return Queue.of(every, state.scan.to_input, work.folder / "labels.jsonl", head)
 
 
 def _ends(graph: ScoredGraph) -> NDArray[np.float64]:
