@@ -289,11 +289,9 @@ def train(
 
     try:
         with progress_bar() as bar:
-            if network == Network.ISOLATION:
-                report = isolation_school(folders, output, seed, epochs, jobs, bar_of(bar))
-            else:
-                course = Course(edge_net.value, start, seed, epochs, scans)
-                report = school(folders, output, course, jobs, bar_of(bar))
+            course = Course(edge_net.value, start, seed, epochs, scans)
+            teach = isolation_school if network == Network.ISOLATION else school
+            report = teach(folders, output, course, jobs, bar_of(bar))
     except PrunusError as error:
         _stop(error)
     if network == Network.ISOLATION:
