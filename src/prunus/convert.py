@@ -18,7 +18,7 @@ from prunus.io.obj import write_obj
 from prunus.io.ros import write_mcap
 from prunus.io.skeletons import read_record, read_skeleton, write_skeleton
 from prunus.io.treetext import write_treetext
-from prunus.model import Skeleton
+from prunus.model import Floats, Skeleton
 
 THIN = 0.005
 """Metres: the radius of tubes and cylinders where it is unknown."""
@@ -26,28 +26,28 @@ THIN = 0.005
 
 @dataclass(frozen=True)
 class Format:
-    """A kind of file for skeletons: how it is written, and what it has no place for.
+    """A kind of file for skeletons: how it is written, what it has no place for, what it needs.
 
-    `solid`: it is made of tubes or cylinders, which need an edge and a radius. `remark`: what is
-    there in another way than one expects.
+    Tubes and cylinders need an edge and a radius. `remark`: what is there in another way than one
+    expects.
     """
 
     write: Callable[[Path, Skeleton], None]
     lacks: tuple[str, ...] = ("confidence", "superpoint")
-    solid: bool = True
+    needs: tuple[str, ...] = ("edge", "radius")
     remark: str = ""
 
 
 NAMES_ONLY = "labels are but the names of meshes and materials"
 FORMATS: dict[str, Format] = {
-    ".json": Format(write_skeleton, (), solid=False),
-    ".swc": Format(write_swc, solid=False, remark="labels are types 16 to 19"),
-    ".ply": Format(write_ply, solid=False),
-    ".graphml": Format(write_graphml, (), solid=False),
+    ".json": Format(write_skeleton, (), ()),
+    ".swc": Format(write_swc, needs=(), remark="labels are types 16 to 19; an unknown radius is 0"),
+    ".ply": Format(write_ply, needs=(), remark="an unknown radius is 0"),
+    ".graphml": Format(write_graphml, (), ()),
     ".glb": Format(write_gltf, remark=NAMES_ONLY),
     ".gltf": Format(write_gltf, remark=NAMES_ONLY),
     ".obj": Format(write_obj, remark=NAMES_ONLY),
-    ".mtg": Format(write_mtg, ("superpoint",), remark="labels are the classes T, S, L, B"),
+    ".mtg": Format(write_mtg, ("superpoint",), ("edge",), "labels are the classes T, S, L, B"),
     ".cylinders.csv": Format(write_cylinders, ("superpoint",)),
     ".treeqsm.csv": Format(write_treeqsm, remark="no mad, no SurfCov: nothing was fitted"),
     ".txt": Format(write_treetext, remark="the tree text of raycloudtools; labels are 0 to 3"),
@@ -76,14 +76,15 @@ def convert_file(
         write_skeleton(target, skeleton, **record.model_dump(include=evidence))
         return []
     skeleton = read_skeleton(source)
-    notes = notes_on(skeleton, FORMATS[kind])
-    if FORMATS[kind].solid:
-        if len(skeleton) == 1:
-            raise PrunusError(f"{source}: holds a base alone; expected at least one edge")
+    notes, needs = notes_on(skeleton, FORMATS[kind]), FORMATS[kind].needs
+    if "edge" in needs and len(skeleton) == 1:
+        raise PrunusError(f"{source}: holds a base alone; expected at least one edge")
+    if "radius" in needs:
         skeleton = skeleton.with_radius(np.nan_to_num(skeleton.radius, nan=THIN))
     if cloud is not None:
         held = read_cloud(cloud, unit)
         write_mcap(target, skeleton, (held.xyz, held.rgb))
+        notes += _rounding(held.xyz)
     else:
         FORMATS[kind].write(target, skeleton)
     return notes
@@ -109,9 +110,17 @@ def notes_on(skeleton: Skeleton, form: Format) -> list[str]:
     lost = [name for name in form.lacks if known[name]]
     notes = [f"left out, as there is no place for it: {', '.join(lost)}"] if lost else []
     thin = int(np.isnan(skeleton.radius).sum())
-    if form.solid and thin:
+    if "radius" in form.needs and thin:
         notes.append(
             f"the radius is unknown at {thin} of {len(skeleton)} nodes: "
             f"{1e3 * THIN:g} mm was taken there"
         )
     return [*notes, *([form.remark] if form.remark else [])]
+
+
+def _rounding(xyz: Floats) -> list[str]:
+    """What single precision makes of points (P, 3), where it is more than a tenth of a millimetre."""
+    step = 1e3 * float(np.spacing(np.abs(xyz).max().astype(np.float32)))
+    if step < 0.1:
+        return []
+    return [f"the points are in single precision: so far from the origin to {step:.3g} mm"]
