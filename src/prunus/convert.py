@@ -119,7 +119,7 @@ def notes_on(skeleton: Skeleton, form: Format) -> list[str]:
 
 
 def _rounding(xyz: Floats) -> list[str]:
-    """What single precision makes of points (P, 3), where it is more than a tenth of a millimetre."""
+    """What single precision makes of points (P, 3), where that is over a tenth of a millimetre."""
     step = 1e3 * float(np.spacing(np.abs(xyz).max().astype(np.float32)))
     if step < 0.1:
         return []
