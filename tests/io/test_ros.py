@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from prunus.io.clouds import read_cloud
-from prunus.io.ros import turned_from_z, write_mcap
+from prunus.io.ros import facing, turned_from_z, write_mcap
 from prunus.io.transforms import rotation
 from prunus.model import Label, Skeleton
 from tests.drawn import tree
@@ -69,3 +69,17 @@ def test_the_same_tree_is_the_same_file(skeleton: Skeleton, tmp_path: Path) -> N
     for name in ("a.mcap", "b.mcap"):
         write_mcap(tmp_path / name, skeleton)
     assert (tmp_path / "a.mcap").read_bytes() == (tmp_path / "b.mcap").read_bytes()
+
+
+def test_a_cut_faces_along_its_normal_and_its_way() -> None:
+    rng = np.random.default_rng(1)
+    normal, other = (
+        v / np.linalg.norm(v, axis=1, keepdims=True) for v in rng.normal(size=(2, 50, 3))
+    )
+    normal[0], other[0] = (0, 0, -1), (1, 0, 0)
+    way = np.cross(normal, other)
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    for turn, z, x in zip(facing(normal, way), normal, way, strict=True):
+        assert rotation(turn) @ np.eye(3) == pytest.approx(np.column_stack([x, np.cross(z, x), z]))
+    unknown = facing(normal, np.zeros_like(normal))
+    assert [rotation(turn)[:, 2] for turn in unknown] == [pytest.approx(z) for z in normal]

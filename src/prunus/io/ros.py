@@ -152,3 +152,18 @@ def turned_from_z(axis: Floats) -> Floats:
     turns = np.column_stack([-axis[:, 1], axis[:, 0], np.zeros(len(axis)), 1 + axis[:, 2]])
     turns[axis[:, 2] < -1 + 1e-12] = (1, 0, 0, 0)
     return np.asarray(turns / np.linalg.norm(turns, axis=1, keepdims=True))
+
+
+def facing(normal: Floats, direction: Floats) -> Floats:
+    """Orientations (C, 4) with Z along unit normals (C, 3) and X along directions square to them.
+
+    Where a direction is zero, X lies anywhere.
+    """
+    least = turned_from_z(normal)
+    x, y, z, w = least.T
+    across = np.column_stack([1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)])
+    sine = (np.cross(across, direction) * normal).sum(axis=1)
+    half = np.arctan2(sine, (across * direction).sum(axis=1))[:, None] / 2
+    about, still = np.sin(half) * normal, np.cos(half)
+    vector = still * least[:, :3] + w[:, None] * about + np.cross(about, least[:, :3])
+    return np.column_stack([vector, still[:, 0] * w - (about * least[:, :3]).sum(axis=1)])
