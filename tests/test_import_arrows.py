@@ -21,6 +21,7 @@ FLOORS = [
 
 SAME_FLOOR = {
     ("cli", "cli"),
+    ("io", "measure"),
     ("rules", "grammar"),
     ("stages", "measure"),
     ("sensing", "stages"),

@@ -455,19 +455,29 @@ def convert(
     source: Annotated[Path, typer.Argument(help="A skeleton (.json, .swc) or a point cloud.")],
     target: Annotated[Path, typer.Argument(help="What to write; the ending says which kind.")],
     unit: Annotated[Unit | None, typer.Option(help="Unit of a cloud. [default: m]")] = None,
+    cloud: Annotated[
+        Path | None, typer.Option(help="The cloud, to go into a bag (.mcap) with the tree.")
+    ] = None,
 ) -> None:
-    """Convert skeletons (to .json, .swc, .ply, .graphml) and clouds (to .ply, .xyz, .csv, .npz).
+    """Convert skeletons and clouds to what others read; says what a kind of file cannot hold.
 
-    For Blender: `prunus convert out/skeleton.json tree.ply`
+    Skeletons: .json .swc .ply .graphml .glb .gltf .obj .mtg .cylinders.csv .treeqsm.csv
+    .txt (raycloudtools) .mcap (ROS 2). Clouds: .ply .xyz .txt .csv .npy .npz.
+
+    For Blender, thick as it is: `prunus convert out/refined.json tree.glb`
+
+    For RViz or Foxglove: `prunus convert out/refined.json tree.mcap --cloud tree.ply`
 
     A cloud for another tool: `prunus convert tree.laz tree.xyz`
     """
     from prunus.convert import convert_file
 
     try:
-        convert_file(source, target, unit and unit.value)
+        notes = convert_file(source, target, unit and unit.value, cloud)
     except PrunusError as error:
         _stop(error)
+    for note in notes:
+        typer.echo(f"{target}: {note}", err=True)
 
 
 def _parameters(path: Path | None, points: str | None, no_isolate: bool) -> Parameters:
