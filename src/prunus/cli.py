@@ -254,7 +254,9 @@ def simulate(
 
 @app.command()
 def train(
-    folder: Annotated[Path, typer.Argument(help="Simulated scans, from `prunus simulate`.")],
+    folders: Annotated[
+        list[Path], typer.Argument(help="Simulated scans, or the studio's folders with labels.")
+    ],
     output: Annotated[Path, typer.Option("-o", "--output", help="Weights to write (.onnx).")],
     network: Annotated[
         Network, typer.Option(help="edges: their confidence; isolation: one tree out of a scan.")
@@ -262,6 +264,15 @@ def train(
     edge_net: Annotated[
         EdgeNet, typer.Option(help="paper: Appendix A; ours: edges in context.")
     ] = EdgeNet.OURS,
+    start: Annotated[
+        str | None,
+        typer.Option(
+            "--from", help="Go on from: ours, paper, a file, scratch. [default: ours with labels]"
+        ),
+    ] = None,
+    scans: Annotated[
+        Path | None, typer.Option(help="Where the labelled scans lie. [default: looked for]")
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
     epochs: Annotated[int | None, typer.Option(min=1, help="[default: as the recipe]")] = None,
     jobs: Annotated[int, typer.Option(min=1, help="Scans at the same time.")] = os.cpu_count() or 1,
@@ -269,24 +280,25 @@ def train(
     """Learn the edge confidence (or isolation) from simulated scans; prints the paper's tables.
 
     `prunus train orchard -o mine.onnx`, then `prunus skeletonize tree.ply --weights mine.onnx`
+
+    From edges labelled in the studio, going on from our network: `prunus train prunus-studio -o
+    mine.onnx`
     """
-    from prunus.learn.school import isolation_school, school
-    from prunus.learn.tables import table
+    from prunus.learn.school import Course, isolation_school, lines_of, school
     from prunus.progress import bar_of, progress_bar
 
     try:
         with progress_bar() as bar:
-            if network == Network.ISOLATION:
-                report = isolation_school(folder, output, seed, epochs, jobs, bar_of(bar))
-            else:
-                report = school(folder, output, edge_net.value, seed, epochs, jobs, bar_of(bar))
+            course = Course(edge_net.value, start, seed, epochs, scans)
+            teach = isolation_school if network == Network.ISOLATION else school
+            report = teach(folders, output, course, jobs, bar_of(bar))
     except PrunusError as error:
         _stop(error)
     if network == Network.ISOLATION:
         kept, removed = report["test"]
         typer.echo(f"test trees: {kept:.1%} of the points kept, {removed:.1%} of all others out")
         return
-    for line in table(report["validation"], report["test"]):
+    for line in lines_of(report):
         typer.echo(line)
 
 
@@ -331,29 +343,87 @@ def experiment(
         ScanKind.FIELD
     ),
     seed: Annotated[int, typer.Option(min=0, help="Another seed, other trees.")] = 0,
+    gold: Annotated[
+        Path | None,
+        typer.Option(help="Your own trees in place of simulated ones: the studio's work folder."),
+    ] = None,
+    scans: Annotated[
+        Path | None, typer.Option(help="Where your own scans lie. [default: looked for]")
+    ] = None,
     ablation: Annotated[
         bool, typer.Option("--ablation", help="Also what each part brings, one at a time.")
     ] = False,
     jobs: Annotated[int, typer.Option(min=1, help="Trees at the same time.")] = os.cpu_count() or 1,
 ) -> None:
-    """Run the paper's result section on simulated trees: tables, figures, index.html.
+    """Run the paper's result section on simulated trees or your own: tables, figures, a page.
 
     A quick look: `prunus experiment -o out --trees 6 --draws 1`
 
+    On your own trees, corrected in the studio: `prunus experiment --gold prunus-studio -o out`
+
     Stopped half way, the same command goes on where it was.
     """
-    from prunus.experiment.results import experiment, lines_of
+    from prunus.experiment.results import Orchard, experiment, lines_of
     from prunus.progress import bar_of, progress_bar
 
     try:
+        if gold is None:
+            orchard = Orchard.simulated(trees, scan.value, seed)
+        else:
+            orchard = Orchard.corrected(gold, scans)
         with progress_bar() as bar:
-            results = experiment(
-                output, trees, draws, scan.value, seed, ablation, min(jobs, trees), bar_of(bar)
-            )
+            results = experiment(output, orchard, draws, ablation, jobs, bar_of(bar))
     except PrunusError as error:
         _stop(error)
     for line in [*lines_of(results), "", f"written to {output / 'index.html'}"]:
         typer.echo(line)
+
+
+@app.command()
+def studio(
+    path: Annotated[Path, typer.Argument(help="A scan, a skeleton.json, or a folder of them.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="Folder in which the work is kept.")
+    ] = Path("prunus-studio"),
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="The next free one is taken; 0: any.")
+    ] = 8080,
+    host: Annotated[
+        str, typer.Option(help="Address to listen on; other machines need the token then.")
+    ] = "127.0.0.1",
+    token: Annotated[
+        str | None, typer.Option(help="Asked for on the page. [default: random, off this machine]")
+    ] = None,
+    no_open: Annotated[bool, typer.Option("--no-open", help="Open no browser.")] = False,
+    frame: Annotated[
+        Frame, typer.Option(help="Frame of the file; auto goes by the evidence in the cloud.")
+    ] = Frame.AUTO,
+    unit: Annotated[
+        Unit | None, typer.Option(help="Unit of the file. [default: m, checked]")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
+    params: Annotated[
+        Path | None,
+        typer.Option(help="Parameters as TOML, as every run writes it; 'paper': as in the paper."),
+    ] = None,
+) -> None:
+    """Look at trees, clean, correct and label them, on a page in the browser.
+
+    A folder of scans: `prunus studio scans/ -o work`
+
+    On another machine: `ssh -t -L 8080:localhost:8080 there prunus studio scans/ --no-open`
+    """
+    from prunus.corrections import Settings
+    from prunus.studio.start import open_studio
+
+    try:
+        settings = Settings(
+            frame=frame.value, unit=unit and unit.value, seed=seed,
+            params=_parameters(params, None, False),
+        )  # fmt: skip
+        open_studio(path, output, settings, host, port, token, not no_open, typer.echo)
+    except PrunusError as error:
+        _stop(error)
 
 
 @app.command()
@@ -385,19 +455,29 @@ def convert(
     source: Annotated[Path, typer.Argument(help="A skeleton (.json, .swc) or a point cloud.")],
     target: Annotated[Path, typer.Argument(help="What to write; the ending says which kind.")],
     unit: Annotated[Unit | None, typer.Option(help="Unit of a cloud. [default: m]")] = None,
+    cloud: Annotated[
+        Path | None, typer.Option(help="The cloud, to go into a bag (.mcap) with the tree.")
+    ] = None,
 ) -> None:
-    """Convert skeletons (to .json, .swc, .ply, .graphml) and clouds (to .ply, .xyz, .csv, .npz).
+    """Convert skeletons and clouds to what others read; says what a kind of file cannot hold.
 
-    For Blender: `prunus convert out/skeleton.json tree.ply`
+    Skeletons: .json .swc .ply .graphml .glb .gltf .obj .mtg .cylinders.csv .treeqsm.csv
+    .txt (raycloudtools) .mcap (ROS 2). Clouds: .ply .xyz .txt .csv .npy .npz.
+
+    For Blender, thick as it is: `prunus convert out/refined.json tree.glb`
+
+    For RViz or Foxglove: `prunus convert out/refined.json tree.mcap --cloud tree.ply`
 
     A cloud for another tool: `prunus convert tree.laz tree.xyz`
     """
     from prunus.convert import convert_file
 
     try:
-        convert_file(source, target, unit and unit.value)
+        notes = convert_file(source, target, unit and unit.value, cloud)
     except PrunusError as error:
         _stop(error)
+    for note in notes:
+        typer.echo(f"{target}: {note}", err=True)
 
 
 def _parameters(path: Path | None, points: str | None, no_isolate: bool) -> Parameters:

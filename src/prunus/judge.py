@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,7 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.evaluate.curves import curve_measures, line_measures
-from prunus.evaluate.edits import edits, label_ratios
+from prunus.evaluate.edits import edits, label_ratios, on_same_nodes
 from prunus.evaluate.found import branch_measures
 from prunus.io.lines import READERS, read_lines
 from prunus.io.skeletons import read_skeleton
@@ -75,8 +74,9 @@ def compare(name: str, predicted: Path, gold: Path) -> Record:
         measures = line_measures(read_lines(predicted), read_lines(gold))
         return {"name": name, "labels": False, **measures}
     record: Record = {"name": name, "labels": True}
-    if _same_superpoints(ours, theirs):
-        needed = edits(_numbered(ours, 1), _numbered(theirs, 2))
+    both = on_same_nodes(ours, theirs)
+    if both is not None:
+        needed = edits(*both)
         record |= {"edit_ratio": needed.ratio, "wrong": needed.wrong, "missing": needed.missing,
                    "mislabelled": needed.mislabelled, "edges": needed.edges}  # fmt: skip
         ratios = label_ratios([needed])
@@ -94,24 +94,6 @@ def _labelled(path: Path) -> Skeleton | None:
         return read_skeleton(path)
     except PrunusError:
         return None
-
-
-def _same_superpoints(one: Skeleton, other: Skeleton) -> bool:
-    """Whether two skeletons share superpoints: where a number stands in both, so does the place."""
-    _, mine, theirs = np.intersect1d(one.superpoint, other.superpoint, return_indices=True)
-    known = one.superpoint[mine] >= 0
-    mine, theirs = mine[known], theirs[known]
-    return len(mine) > 0 and bool(np.allclose(one.xyz[mine], other.xyz[theirs], atol=1e-4))
-
-
-def _numbered(skeleton: Skeleton, whose: int) -> Skeleton:
-    """The skeleton with numbers of their own for points that a person added: no superpoints."""
-    own = whose * NUMBERS + np.arange(len(skeleton))
-    return replace(skeleton, superpoint=np.where(skeleton.superpoint < 0, own, skeleton.superpoint))
-
-
-NUMBERS = 2**40
-"""More than there are superpoints."""
 
 
 def spread_lines(records: list[Record]) -> list[str]:

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from prunus.experiment.results import experiment, lines_of
+from prunus.experiment.orchard import Simulated
+from prunus.experiment.results import Orchard, experiment, lines_of
 from prunus.experiment.run import run_tree
 from prunus.experiment.tables import edit_ratios, spread, way_of
 from prunus.experiment.trial import WAYS
@@ -17,7 +18,8 @@ from prunus.experiment.trial import WAYS
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("experiment")
-    experiment(folder, 1, 1, "clean", 0, False, 1, lambda items, name, total: items)
+    orchard = Orchard.simulated(1, "clean", 0)
+    experiment(folder, orchard, 1, False, 1, lambda items, name, total: items)
     return folder
 
 
@@ -50,14 +52,15 @@ def test_what_is_done_is_not_done_again(folder: Path) -> None:
     held = json.loads(path.read_text())
     held["trials"][0]["edit_ratio"] = 0.125
     path.write_text(json.dumps(held))
-    assert run_tree(folder, held["seed"], 1, "clean")["trials"][0]["edit_ratio"] == 0.125
+    tree = Simulated(900_000, "clean")
+    assert run_tree(folder, tree, 1)["trials"][0]["edit_ratio"] == 0.125
     held["made_by"] = "another version"
     path.write_text(json.dumps(held))
-    assert run_tree(folder, held["seed"], 1, "clean")["trials"][0]["edit_ratio"] != 0.125
+    assert run_tree(folder, tree, 1)["trials"][0]["edit_ratio"] != 0.125
 
 
 def test_a_trial_without_a_skeleton_counts_as_all_wrong() -> None:
-    failed: dict[str, Any] = {"seed": 1, "way": "paper", "habits": [], "error": "no tips"}
+    failed: dict[str, Any] = {"tree": "a", "way": "paper", "habits": [], "error": "no tips"}
     assert edit_ratios([failed]) == [1.0]
     found = way_of([failed])
     assert found["failed"] == 1

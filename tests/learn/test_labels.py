@@ -5,8 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from prunus.io.labels import CATEGORIES
 from prunus.learn.labels import (
-    CATEGORIES,
     INVALID,
     OTHER,
     TrueWood,

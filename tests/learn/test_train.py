@@ -15,8 +15,9 @@ from prunus.learn import examples as examples_of  # noqa: E402
 from prunus.learn.examples import Example, example_of, split_by_tree  # noqa: E402
 from prunus.learn.labels import TrueWood, edge_labels  # noqa: E402
 from prunus.learn.net import ContextNet, PaperNet  # noqa: E402
-from prunus.learn.school import school  # noqa: E402
-from prunus.learn.train import RECIPES, calibrated, onnx_bytes, predict, side_by_side, train  # noqa: E402
+from prunus.learn.recipes import RECIPES, side_by_side  # noqa: E402
+from prunus.learn.school import Course, school  # noqa: E402
+from prunus.learn.train import calibrated, onnx_bytes, predict, train  # noqa: E402
 from prunus.model import CandidateGraph  # noqa: E402
 from prunus.params import Parameters  # noqa: E402
 from prunus.simulate.orchard import simulate_tree  # noqa: E402
@@ -103,6 +104,10 @@ class Swap(torch.nn.Module):
         return other + 1, one + 1
 
 
+def silently(items, name, total):
+    return items
+
+
 def test_a_folder_of_scans_gives_weights_and_tables(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -111,9 +116,7 @@ def test_a_folder_of_scans_gives_weights_and_tables(
     for seed in range(5):
         simulate_tree(tmp_path / "orchard", seed, "field", views=False)
     weights = tmp_path / "mine.onnx"
-    report = school(
-        tmp_path / "orchard", weights, "ours", 0, 1, 1, lambda items, name, total: items
-    )
+    report = school([tmp_path / "orchard"], weights, Course(epochs=1), 1, silently)
     assert report["trees"] == [3, 1, 1]
     written = json.loads(weights.with_suffix(".json").read_text())
     assert written["test"]["edges"] == report["test"]["edges"] > 100

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from prunus.model import Label, Skeleton
+from prunus.model import Floats, Ints, Label, Skeleton
 
 Pair = tuple[int, int]
 ONE_A_TREE = (Label.TRUNK, Label.SUPPORT)
@@ -55,6 +55,39 @@ def edits(skeleton: Skeleton, corrected: Skeleton) -> Edits:
         segments,
         {label: int(corrected.edges_with(label).sum()) for label in Label},
     )
+
+
+def on_same_nodes(one: Skeleton, other: Skeleton) -> tuple[Skeleton, Skeleton] | None:
+    """Both with a number for every node: their superpoints', and for free points one by place.
+
+    None where they do not share superpoints: where a number stands in both, so must the place. A
+    base alone may stand lower than its superpoint.
+    """
+    known = one.superpoint[one.superpoint >= 0], other.superpoint[other.superpoint >= 0]
+    shared = np.setdiff1d(np.intersect1d(*known), [one.superpoint[0], other.superpoint[0]])
+    apart = _places(one, shared) - _places(other, shared)
+    if len(shared) == 0 or np.abs(apart).max() > SAME_PLACE:
+        return None
+    first = int(max(*map(np.max, known))) + 1
+    free = np.concatenate([tree.xyz[tree.superpoint < 0] for tree in (one, other)])
+    _, number = np.unique(np.rint(free / SAME_PLACE), axis=0, return_inverse=True)
+    ours, theirs = np.split(first + number.ravel(), [int((one.superpoint < 0).sum())])
+    return _numbered(one, ours), _numbered(other, theirs)
+
+
+SAME_PLACE = 1e-4
+"""Nodes so near to each other, metres, are one."""
+
+
+def _places(tree: Skeleton, superpoints: Ints) -> Floats:
+    rows = {number: row for row, number in enumerate(tree.superpoint.tolist())}
+    return tree.xyz[[rows[number] for number in superpoints.tolist()]]
+
+
+def _numbered(tree: Skeleton, free: Ints) -> Skeleton:
+    number = tree.superpoint.copy()
+    number[number < 0] = free
+    return replace(tree, superpoint=number)
 
 
 def label_ratios(trees: list[Edits]) -> dict[Label, list[float]]:

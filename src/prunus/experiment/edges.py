@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from prunus.experiment.orchard import tree_of
-from prunus.learn.labels import TrueWood, edge_labels
+from prunus.experiment.orchard import Tree
+from prunus.learn.labels import UNTOLD, TrueWood, edge_labels
 from prunus.learn.tables import measures
+from prunus.model import CandidateGraph, Ints
 from prunus.params import Parameters
-from prunus.simulate.settings import Setting
 from prunus.stages.candidates import find_candidates
 from prunus.stages.networks import NetworkScorer
 from prunus.stages.superpoints import find_superpoints
@@ -19,27 +19,39 @@ NETWORKS = {"paper": Parameters.paper(), "ours": Parameters()}
 """Each network on the candidate edges of the way that it serves."""
 
 
-def edge_record(seed: int, setting: Setting) -> dict[str, Any]:
+def edge_record(tree: Tree) -> dict[str, Any]:
     """By network: confidence (E,), likeliest category (E,) and the truth (E,), -1 = not valid."""
-    tree = tree_of(seed, setting)
     wood = TrueWood.of([tree.truth], [tree.counts])
     found = {}
     for name, params in NETWORKS.items():
         rng = np.random.default_rng(0)
         cloud = tree.cloud.sample(50_000, rng)
         graph = find_candidates(find_superpoints(cloud, params.superpoints, rng))
-        confidence, category = NetworkScorer.shipped(name).judge(graph)
         truth = edge_labels(cloud.to_input.apply(graph.xyz), graph.edges, wood)
-        found[name] = {
-            "confidence": np.round(confidence, 4).tolist(),
-            "category": category.argmax(axis=1).tolist(),
-            "truth": truth.tolist(),
-        }
+        found[name] = judged_edges(name, [(graph, truth)])
+    return found
+
+
+def judged_edges(network: str, graphs: list[tuple[CandidateGraph, Ints]]) -> dict[str, Any]:
+    """What a network says of the edges of some graphs of which the truth (E,) is told."""
+    found: dict[str, list[Any]] = {"confidence": [], "category": [], "truth": []}
+    for graph, truth in graphs:
+        told = truth > UNTOLD
+        confidence, category = NetworkScorer.shipped(network).judge(graph)
+        found["confidence"] += np.round(confidence[told], 4).tolist()
+        found["category"] += category.argmax(axis=1)[told].tolist()
+        found["truth"] += truth[told].tolist()
     return found
 
 
 def edge_measures(records: list[dict[str, Any]]) -> dict[str, Any]:
-    """The paper's tables of each network over all trees, see `learn.tables.measures`."""
+    """The paper's tables of each network over all trees, see `learn.tables.measures`.
+
+    Empty where no edge of any tree is known.
+    """
+    records = [record for record in records if record["edges"]]
+    if not records:
+        return {}
     return {
         name: measures(*(
             np.concatenate([np.array(record["edges"][name][column]) for record in records])

@@ -11,6 +11,7 @@ import numpy as np
 from prunus.model import Ints
 
 COLOURS = {
+    "corrected by hand": "#d55e00",
     "paper": "#999999",
     "default": "#0072b2",
     "oracle": "#009e73",

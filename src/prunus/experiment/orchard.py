@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -17,21 +18,70 @@ from prunus.simulate.settings import Setting
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """The points (P, 3) of one tree alone, its true skeleton, and which of its rows (M,) count.
+    """The cloud of one tree alone, as a person leaves it who removes all else by hand.
 
+    truth: its skeleton, in the frame of the cloud's file, and which of its rows (M,) count;
     `habits` names what is difficult about it.
     """
 
-    seed: int
-    xyz: Floats
+    name: str
+    cloud: PointCloud
     truth: Skeleton
     counts: Bools
     habits: tuple[str, ...]
 
+
+class Subject(Protocol):
+    """A tree that can be tried: where it comes from, before it is looked at."""
+
     @property
-    def cloud(self) -> PointCloud:
-        """The cloud, as a person leaves it who removes all else by hand."""
-        return PointCloud.from_xyz(self.xyz)
+    def name(self) -> str:
+        """What the tree is called."""
+
+    @property
+    def made_of(self) -> str:
+        """What the tree depends on, as text: another text, another tree."""
+
+    def tree(self) -> Tree:
+        """The tree. PrunusError where it cannot be had."""
+
+    def by_hand(self) -> list[dict[str, Any]]:
+        """Trials that people corrected."""
+
+    def edges(self) -> dict[str, Any]:
+        """What the edge networks say of its edges, see `experiment.edges`; empty: nothing known."""
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """A simulated tree: a program that knows it makes the corrections."""
+
+    seed: int
+    setting: Setting
+
+    @property
+    def name(self) -> str:
+        """The name that `prunus simulate` would give it."""
+        return f"tree_{self.seed}"
+
+    @property
+    def made_of(self) -> str:
+        """The setting; the seed is in the name."""
+        return self.setting
+
+    def tree(self) -> Tree:
+        """The target of the scan of that seed."""
+        return tree_of(self.seed, self.setting)
+
+    def by_hand(self) -> list[dict[str, Any]]:
+        """None: nobody corrected it."""
+        return []
+
+    def edges(self) -> dict[str, Any]:
+        """Both networks on all candidate edges."""
+        from prunus.experiment.edges import edge_record
+
+        return edge_record(self.tree())
 
 
 @lru_cache(maxsize=4)
@@ -44,7 +94,8 @@ def tree_of(seed: int, setting: Setting = "field") -> Tree:
     at = row[scan.node[own]]
     branch = np.where(at >= 0, branch_of_rows(branches(truth), len(truth))[at], -1)
     counts = counting_rows(truth, scan.xyz[own], branch)
-    return Tree(seed, scan.xyz[own], truth, counts, habits_of(truth))
+    cloud = PointCloud.from_xyz(scan.xyz[own])
+    return Tree(f"tree_{seed}", cloud, truth, counts, habits_of(truth))
 
 
 @dataclass(frozen=True)

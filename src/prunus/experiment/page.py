@@ -9,7 +9,7 @@ from typing import Any
 from prunus.experiment.figures import histogram, legend, scatter
 from prunus.experiment.habits import HABITS
 from prunus.experiment.tables import all_stages, before, by_label, edit_ratios
-from prunus.experiment.trial import ABLATIONS, WAYS, Record
+from prunus.experiment.trial import ABLATIONS, BY_HAND, WAYS, Record
 from prunus.io.tables import csv_bytes
 from prunus.learn.tables import PAPER
 from prunus.model import Label
@@ -26,7 +26,7 @@ IN_PAPER: dict[str, str] = {
     "of it before the search": "5 %",
 }
 """What the paper has, on 29 real trees corrected by people."""
-SHOWN = ("paper", "default", "oracle", "paper, oracle")
+SHOWN = (BY_HAND, "paper", "default", "oracle", "paper, oracle")
 """Ways in the figures."""
 STYLE = """
 body{font:15px/1.45 system-ui,sans-serif;color:#222;margin:0 auto;max-width:1250px}
@@ -41,6 +41,17 @@ th{color:#666;border-bottom:1px solid #ccc}td:first-child,th:first-child{text-al
 .axis{font-size:11px;text-anchor:middle;fill:#555}
 .tick{font-size:10px;text-anchor:middle;fill:#777}.end{text-anchor:end}.grid{stroke:#e5e5e5}
 """
+
+
+EDGE_HEAD = ["edges", "in the paper", "paper's network", "ours"]
+
+
+def main_ways(results: Record) -> tuple[dict[str, Record], dict[str, Record]]:
+    """The ways of the main table, and those of the table of parts."""
+    parts = {way.name for way in ABLATIONS}
+    ways: dict[str, Record] = results["ways"]
+    main = {name: way for name, way in ways.items() if name not in parts}
+    return main, {name: way for name, way in ways.items() if name in parts}
 
 
 def main_rows(ways: dict[str, Record]) -> list[list[str]]:
@@ -112,10 +123,10 @@ def markdown(head: list[str], rows: list[list[str]]) -> list[str]:
 
 def html_page(results: Record, trials: list[Record]) -> str:
     """The page; needs no network."""
-    ways = {way.name: results["ways"][way.name] for way in WAYS}
-    others = {name: way for name, way in results["ways"].items() if name not in ways}
-    by_way = {name: [t for t in trials if t["way"] == name] for name in SHOWN}
+    ways, others = main_ways(results)
+    by_way = {name: [t for t in trials if t["way"] == name] for name in SHOWN if name in ways}
     done = {name: [t for t in own if "error" not in t] for name, own in by_way.items()}
+    timed = {name: [t for t in own if "cpu_s" in t] for name, own in done.items()}
     about = "".join(f"<li><b>{way.name}</b>: {way.about}</li>" for way in WAYS)
     labels = {name: by_label(own) for name, own in done.items()}
     figures = [
@@ -134,12 +145,12 @@ def html_page(results: Record, trials: list[Record]) -> str:
         scatter(
             "Run time against superpoints", "superpoints", "CPU seconds",
             {n: ([t["superpoints"] for t in own], [t["cpu_s"]["total"] for t in own])
-             for n, own in done.items()},
+             for n, own in timed.items()},
         ),
         scatter(
             "Before the search and in all", "CPU seconds of all stages", "before the search",
             {n: ([all_stages(t) for t in own], [before(t) for t in own])
-             for n, own in done.items()},
+             for n, own in timed.items()},
         ),
     ]  # fmt: skip
     return f"""<!DOCTYPE html>
@@ -150,13 +161,17 @@ def html_page(results: Record, trials: list[Record]) -> str:
 {html_table(["", "in the paper", *ways], main_rows(ways))}
 <p class="quiet">Median edit ratio by label: NaN where a corrected tree has none of it. Found: at
 least 80 % of a true leader, 50 % of a side branch. Shown: of what the scan shows.</p>
-<h2>Figures</h2>{legend(SHOWN)}<div class="room">{"".join(f"<div>{f}</div>" for f in figures)}</div>
+<h2>Figures</h2>{legend(list(by_way))}
+<div class="room">{"".join(f"<div>{f}</div>" for f in figures)}</div>
 {_ablation(others | ways) if others else ""}
 <h2>By habit of the tree: median edit ratio</h2>{html_table(["", *ways], habit_rows(ways))}
-<h2>Edge confidence</h2>
-{html_table(["", "in the paper", "paper's network", "ours"], edge_rows(results["edges"]))}
+{_edges(results["edges"]) if results["edges"] else ""}
 </body></html>
 """
+
+
+def _edges(edges: Record) -> str:
+    return "<h2>Edge confidence</h2>" + html_table(EDGE_HEAD, edge_rows(edges))
 
 
 def _ablation(ways: dict[str, Record]) -> str:

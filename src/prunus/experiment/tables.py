@@ -27,6 +27,8 @@ def way_of(trials: list[Record]) -> Record:
     """The figures of one way. A trial without a skeleton counts with an edit ratio of 1."""
     done = [trial for trial in trials if "error" not in trial]
     ratios = edit_ratios(trials)
+    timed = [trial for trial in done if "cpu_s" in trial]
+    scored = [trial for trial in done if "score_of_corrected" in trial]
     return {
         "trials": len(trials),
         "failed": len(trials) - len(done),
@@ -47,12 +49,12 @@ def way_of(trials: list[Record]) -> Record:
             for word in (*(label.word for label in Label), "geometry")
             for kind in ("recall", "precision", "f1")
         },
-        "cpu_s": spread([trial["cpu_s"]["total"] for trial in done]),
-        "cpu_before_search": _median(before(trial) / all_stages(trial) for trial in done),
-        "score_found": _median(trial["score"] for trial in done),
-        "score_of_corrected": _median(trial["score_of_corrected"] for trial in done),
+        "cpu_s": spread([trial["cpu_s"]["total"] for trial in timed]),
+        "cpu_before_search": _median(before(trial) / all_stages(trial) for trial in timed),
+        "score_found": _median(trial["score"] for trial in scored),
+        "score_of_corrected": _median(trial["score_of_corrected"] for trial in scored),
         "corrected_scores_less": float(
-            np.mean([t["score_of_corrected"] < t["score"] for t in done]) if done else math.nan
+            np.mean([t["score_of_corrected"] < t["score"] for t in scored]) if scored else math.nan
         ),
         "habits": _by_habit(trials, edit_ratios),
     }
@@ -99,7 +101,7 @@ def _by_habit(trials: list[Record], ratios: Callable[[list[Record]], list[float]
     found = {}
     for habit in HABITS:
         own = [trial for trial in trials if habit in trial["habits"]]
-        trees = len({trial["seed"] for trial in own})
+        trees = len({trial["tree"] for trial in own})
         found[habit] = {"trees": trees, "edit_ratio": _median(ratios(own))}
     return found
 

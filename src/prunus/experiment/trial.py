@@ -10,16 +10,15 @@ import numpy as np
 
 from prunus.evaluate.correction import corrected
 from prunus.evaluate.curves import curve_measures
-from prunus.evaluate.edits import edits
+from prunus.evaluate.edits import Edits, edits
 from prunus.evaluate.found import branch_measures
-from prunus.experiment.orchard import OracleScorer, Tree, tree_of
+from prunus.experiment.orchard import OracleScorer, Tree
 from prunus.io.tables import without_nan
 from prunus.measure import shown
 from prunus.model import Label, Skeleton
 from prunus.params import Parameters
 from prunus.pipeline import Result, skeletonize
 from prunus.search import learned_score_of, shipped_score, skel_score
-from prunus.simulate.settings import Setting
 
 Record = dict[str, Any]
 """What is measured of a trial: plain numbers and words, as they go into results.json."""
@@ -35,6 +34,9 @@ class Way:
     oracle: bool = False
     base: bool = True
 
+
+BY_HAND = "corrected by hand"
+"""The way of trials that people corrected: the machine's skeleton as they found it."""
 
 WAYS = (
     Way("paper", "the method as the paper has it, with its network", Parameters.paper()),
@@ -88,9 +90,8 @@ def ways(ablation: bool) -> tuple[Way, ...]:
     return WAYS + ABLATIONS if ablation else WAYS
 
 
-def trial(seed: int, draw: int, way: Way, setting: Setting) -> Record:
+def trial(tree: Tree, draw: int, way: Way) -> Record:
     """Skeletonize one draw of a tree, correct it, measure it."""
-    tree = tree_of(seed, setting)
     cloud = tree.cloud
     base = tree.truth.xyz[0] if way.base else None
     scorer = OracleScorer(tree) if way.oracle else None
@@ -98,7 +99,7 @@ def trial(seed: int, draw: int, way: Way, setting: Setting) -> Record:
     result = skeletonize(cloud, base, way.params, draw, scorer)
     cpu = time.process_time() - cpu
     return {
-        "seed": seed,
+        "tree": tree.name,
         "draw": draw,
         "way": way.name,
         "habits": list(tree.habits),
@@ -116,15 +117,25 @@ def judged(result: Result, tree: Tree) -> Record:
     found = result.skeleton
     nodes = result.graph.superpoints.cloud.to_input.apply(result.graph.xyz)
     right = corrected(found, nodes, tree.truth, tree.counts)
-    needed = edits(found, right)
+    return {
+        **edited(edits(found, right)),
+        "score": score_of(found, result),
+        "score_of_corrected": score_of(right, result),
+        **as_found(found, tree),
+    }
+
+
+def edited(needed: Edits) -> Record:
+    """The edits of a trial."""
     counts = asdict(needed)
     for name in ("differing", "segments", "segment_edges"):
         counts[name] = {label.word: counts[name][label] for label in Label}
+    return {"edit_ratio": needed.ratio, "edits": counts}
+
+
+def as_found(found: Skeleton, tree: Tree) -> Record:
+    """The curve and branch measures of a trial."""
     return {
-        "edit_ratio": needed.ratio,
-        "edits": counts,
-        "score": score_of(found, result),
-        "score_of_corrected": score_of(right, result),
         "curves": without_nan(curve_measures(found, tree.truth)),
         "branches": without_nan(branch_measures(found, tree.truth)),
         "branches_shown": without_nan(branch_measures(found, shown(tree.truth, tree.counts))),

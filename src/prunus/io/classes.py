@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from prunus.errors import PrunusError
 from prunus.io.clouds import WRITTEN, FileCloud, columns_of
-from prunus.io.ply import ply_bytes, table_of
-from prunus.io.safely import write_bytes
-from prunus.model import Kind
+from prunus.io.ply import ply_bytes, read_ply, table_of
+from prunus.io.safely import read_bytes, write_bytes
+from prunus.model import Bools, Kind
 
 KINDS = ", ".join(f"{kind.value} {kind.name.lower()}" for kind in Kind)
 """The classes in words, as files have them."""
@@ -24,3 +24,20 @@ def write_classes(path: Path, file: FileCloud, kind: NDArray[Any]) -> None:
         raise PrunusError(f"{path}: classes are written as .ply")
     columns = columns_of(file.xyz, file.rgb) | {"kind": kind.astype(np.uint8)}
     write_bytes(path, ply_bytes({"vertex": table_of(columns)}, [WRITTEN, f"kind: {KINDS}"]))
+
+
+def target_of(path: Path, points: int) -> Bools:
+    """Which points (P,) of a scan of so many are the tree.
+
+    PrunusError where the file is none of that scan, or leaves none.
+    """
+    vertex = read_ply(read_bytes(path), path)["vertex"]
+    if "kind" not in (vertex.dtype.names or ()) or len(vertex) != points:
+        raise PrunusError(
+            f"{path}: {len(vertex)} points; expected {points}, each with its `kind`, as "
+            "`prunus isolate --classes` writes them"
+        )
+    target = np.asarray(vertex["kind"] == Kind.TARGET)
+    if not target.any():
+        raise PrunusError(f"{path}: no point of it is the tree; expected some")
+    return target

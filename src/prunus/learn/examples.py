@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from prunus.errors import PrunusError
 from prunus.io.scans import ScannedTree, read_scan
 from prunus.kernels.neighbours import within
-from prunus.learn.labels import TrueWood, edge_labels
+from prunus.learn.labels import UNTOLD, TrueWood, edge_labels
 from prunus.measure import counting_rows
 from prunus.model import Bools, CandidateGraph, Ints, Kind, PointCloud, Superpoints
 from prunus.params import Cover
@@ -51,12 +51,20 @@ SPLIT = (0.7, 0.2, 0.1)
 
 @dataclass(frozen=True, eq=False)
 class Example:
-    """The candidate edges of one cloud. images (E, 16, 32) count 0 to 255; category (E,)."""
+    """The candidate edges of one cloud. images (E, 16, 32) count 0 to 255; category (E,).
+
+    See `learn.labels` for the numbers of the categories.
+    """
 
     images: NDArray[np.uint8]
     described: Inputs
     context: Context
     category: Ints
+
+    @property
+    def told(self) -> Bools:
+        """Of which edges (E,) somebody said whether they are valid."""
+        return np.asarray(self.category > UNTOLD)
 
     @property
     def valid(self) -> Bools:
@@ -119,7 +127,7 @@ def _examples(
         return
     category = edge_labels(cloud.to_input.apply(graph.xyz), graph.edges, wood)
     yield example_of(graph, category)
-    yield example_of(_seen_again(graph, drawn(cloud, rng)), category)
+    yield example_of(seen_again(graph, drawn(cloud, rng)), category)
 
 
 def drawn(cloud: PointCloud, rng: np.random.Generator) -> PointCloud:
@@ -128,7 +136,7 @@ def drawn(cloud: PointCloud, rng: np.random.Generator) -> PointCloud:
     return cloud.sample(round(math.exp(rng.uniform(low, high))), rng)
 
 
-def _seen_again(graph: CandidateGraph, cloud: PointCloud) -> CandidateGraph:
+def seen_again(graph: CandidateGraph, cloud: PointCloud) -> CandidateGraph:
     """The same edges in another draw of the same cloud."""
     under = graph.superpoints
     start, members = within(cloud.xyz, under.xyz, under.radius)

@@ -39,7 +39,10 @@ OTHER = 4
 """Category of wood that is none of the labels."""
 INVALID = -1
 """Category of an edge that is not valid."""
-CATEGORIES = (*(label.word for label in Label), "other")
+SOME = 5
+"""Category of a valid edge of which nobody said what it is."""
+UNTOLD = -2
+"""Category of an edge of which nobody said anything."""
 
 
 @dataclass(frozen=True, eq=False)

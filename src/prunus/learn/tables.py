@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from prunus.learn.labels import CATEGORIES
+from prunus.io.labels import CATEGORIES
 from prunus.model import Bools, Floats, Ints
 
 BINS = 10
@@ -23,15 +23,16 @@ def measures(confidence: Floats, category: Ints, truth: Ints) -> dict[str, Any]:
     """Accuracy of validity and category; precision and recall by class; calibration.
 
     confidence (E,) in [0, 1]; category (E,) the likeliest; truth (E,) -1 where not valid. As in
-    the paper the category is judged on valid edges.
+    the paper the category is judged on valid edges, of those whose category is known.
     """
     valid, said = truth >= 0, confidence > 0.5
-    kind, named = category[valid], truth[valid]
+    known = valid & (truth < len(CATEGORIES))
+    kind, named = category[known], truth[known]
     found = {
         "edges": len(truth),
         "valid_share": float(valid.mean()),
         "validity_accuracy": float((said == valid).mean()),
-        "category_accuracy": float((kind == named).mean()),
+        "category_accuracy": float((kind == named).mean()) if len(named) else float("nan"),
         "valid": precision_recall(said, valid),
         "invalid": precision_recall(~said, ~valid),
     }

@@ -17,6 +17,12 @@ from prunus.stages.images import edge_images
 WEIGHTS = Path(__file__).parents[1] / "weights"
 """The networks that the package ships: `ours.onnx`, `paper.onnx`."""
 
+
+def shipped_or_own(name: str) -> Path:
+    """The file of a network: `ours` and `paper` are those that the package ships."""
+    return WEIGHTS / f"{name}.onnx" if name in ("ours", "paper") else Path(name)
+
+
 SHOWN = (
     frozenset({"image", "description"}),
     frozenset({"profile", "bend", "edge", "met", "meeting"}),

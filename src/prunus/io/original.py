@@ -1,0 +1,49 @@
+"""The scan that something was made from, found again by its name and its sha256."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from glob import escape
+from pathlib import Path
+
+from prunus.errors import PrunusError
+from prunus.io.inputs import source_of
+from prunus.io.safely import digest_of
+from prunus.io.skeletons import InputRecord
+
+
+def original_of(record: InputRecord, folder: Path, scans: Path | None = None) -> Path:
+    """The input that a file in the work folder NAME was made from.
+
+    Looked for in `scans` where that is given, else in the folder, in those above it, and in the
+    folder that one works in; there also one folder deeper, and in folders called NAME.
+    Raises PrunusError where there is none of that name, or another content in all of that name.
+    """
+    others = []
+    for path in dict.fromkeys(_places(record.file, folder, scans)):
+        if digest_of(source_of(path).path) == record.sha256:
+            return path
+        others.append(path)
+    if others:
+        raise PrunusError(
+            f"{others[0]}: not the file that {folder} was made from (its sha256 is another); "
+            "expected the same scan, unchanged: say where it is with --scans"
+        )
+    where = scans or f"{folder}, above it and in {Path.cwd()}"
+    raise PrunusError(
+        f"{record.file}: not found in {where}; expected the scan that {folder} was made from: "
+        "say where it is with --scans"
+    )
+
+
+def _places(name: str, folder: Path, scans: Path | None) -> Iterator[Path]:
+    """Where an input of that name lies, if anywhere; a topic of a bag keeps its topic."""
+    file, _, topic = name.partition("#")
+    if Path(file).name != file:
+        return
+    own = folder.resolve()
+    roots = [scans] if scans else [own, *list(own.parents)[:2], Path.cwd()]
+    for root in roots:
+        for pattern in ("", "*/", f"{escape(own.name)}/", f"*/{escape(own.name)}/"):
+            for path in sorted(root.glob(pattern + escape(file))):
+                yield Path(f"{path}#{topic}") if topic else path
