@@ -92,7 +92,7 @@ class Show:
     def _points(self) -> None:
         gui = self.desk.gui
         self._box("points")
-        self.colour = gui.add_dropdown("Colour", COLOURS)
+        self.colour = gui.add_dropdown("Colour", COLOURS, hint="depth: red in front, blue behind")
         watch(self.colour, lambda value: self._wish(colour=value))
         self.others = gui.add_checkbox("others", False, hint="What is not the tree: ground, posts")
         watch(self.others, lambda value: self._wish(others=value))
