@@ -1,4 +1,4 @@
-"""The real scan as a person corrected it: the journal gives the same tree again, and what it is."""
+"""The real scan as it was corrected on the page: what it came to, and that it does so again."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -64,7 +64,7 @@ def test_the_real_tree_is_a_legal_one_of_a_trunk_two_supports_and_five_leaders(
     assert left == pytest.approx(1.72, abs=0.01) and right == pytest.approx(0.35, abs=0.01)
 
 
-def test_a_fifth_of_the_machines_edges_needed_a_person(corrected: Work) -> None:
+def test_a_fifth_of_the_edges_had_to_be_corrected(corrected: Work) -> None:
     needed = edits(corrected.machine, corrected.state.draft.numbered())
     assert (needed.wrong, needed.missing, needed.mislabelled) == (13, 11, 9)
     assert needed.ratio == pytest.approx(0.213, abs=0.001)

@@ -119,6 +119,8 @@ def test_a_path_that_is_drawn_in_another_way_is_at_its_end(opened: Opened) -> No
 
 def test_the_close_view_turns_about_what_is_picked(opened: Opened) -> None:
     visit = opened()
+    visit.press("Correct")
+    visit.reads("Click a branch, then")
     node = visit.a_branch(Label.LEADER)
     visit.click_edge(node)
     skeleton, row = visit.picture.skeleton, visit.picture.row(node)
@@ -131,6 +133,7 @@ def test_the_close_view_turns_about_what_is_picked(opened: Opened) -> None:
 def test_how_far_a_relabelling_goes_is_told_by_keys(opened: Opened) -> None:
     visit = opened()
     visit.press("Correct")
+    visit.reads("Click a branch, then")
     visit.click_edge(visit.a_branch(Label.LEADER))
     for key, reach in REACHES.items():
         visit.page.keyboard.press(key.lower())
