@@ -171,7 +171,7 @@ def test_edges_are_labelled_one_key_each(opened: Opened, tmp_path: Path) -> None
         visit.reads(f"{count} of")
         asked.append(visit.desk.mode.queue.edge)
     assert len(set(asked)) == 4
-    unsure = np.abs(visit.desk.picture.graph.confidence[asked] - 0.5)
+    unsure = np.abs(visit.desk.mode.queue.graph.confidence[asked] - 0.5)
     assert (np.diff(unsure) >= 0).all()
     assert (tmp_path / "oak" / "labels.jsonl").read_text().count("\n") == 4
 
