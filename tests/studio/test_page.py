@@ -52,6 +52,7 @@ def test_a_tree_is_opened_turned_corrected_and_found_again(opened: Opened, tmp_p
 
     # Remove a branch, take that back, do it again.
     visit.press("Correct")
+    visit.reads("Click a branch, then")
     side = visit.a_branch(Label.SIDE_BRANCH)
     visit.click_edge(side)
     visit.page.keyboard.press("Shift+Delete")
@@ -80,6 +81,7 @@ def test_a_tree_is_opened_turned_corrected_and_found_again(opened: Opened, tmp_p
 def test_a_path_is_added_stop_by_stop(opened: Opened) -> None:
     visit = opened()
     visit.press("Correct")
+    visit.reads("Click a branch, then")
     first = visit.nodes
     draft = visit.desk.tree.state.draft
     visit.page.keyboard.press("p")
@@ -100,6 +102,7 @@ def test_a_path_is_added_stop_by_stop(opened: Opened) -> None:
 def test_a_path_that_is_drawn_in_another_way_is_at_its_end(opened: Opened) -> None:
     visit = opened()
     visit.press("Correct")
+    visit.reads("Click a branch, then")
     draft = visit.desk.tree.state.draft
     visit.page.keyboard.press("p")
     visit.reads("Click a node of the tree, then")
