@@ -1,0 +1,92 @@
+"""A skeleton refined: its lines where the axes of the branches run, and their radii.
+
+The skeleton of a graph goes from superpoint to superpoint, five to ten centimetres apart and in
+front of the wood. Here it is fitted to all points of the tree. Labels and topology stay.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from prunus.measure.branches import Branch
+from prunus.measure.centrelines import lines_of
+from prunus.measure.fitting import Fit, fitted
+from prunus.measure.radii import Unknown
+from prunus.measure.ribbons import supported
+from prunus.model import Bools, Floats, Ints, PointCloud, Skeleton
+
+
+@dataclass(frozen=True, eq=False)
+class Refined:
+    """The refined skeleton in the house frame, and what is known of each of its nodes (M,).
+
+    `skeleton` has a node about every centimetre; `superpoint` is kept at the node that stands for
+    it, -1 elsewhere. `radius_error` is the standard deviation of the radius, metres; `unknown` why
+    a radius is NaN (see `Unknown`); `seen` whether points of the scan lie at the node.
+    """
+
+    skeleton: Skeleton
+    radius_error: Floats
+    unknown: Ints
+    seen: Bools
+
+    @property
+    def reason(self) -> list[str]:
+        """Why each radius (M,) is NaN, in words; nothing where it is known."""
+        return [Unknown(value).words for value in self.unknown]
+
+
+def refined(skeleton: Skeleton, cloud: PointCloud) -> Refined:
+    """Refine a skeleton with the points of its tree, both in the house frame.
+
+    The cameras are taken to stand at smaller Y. A stretch without points stays where it is.
+    """
+    lines, found = lines_of(skeleton)
+    if not found:
+        nothing = np.full(len(skeleton), int(Unknown.FEW_POINTS))
+        unknown = np.full(len(skeleton), np.nan)
+        return Refined(skeleton.with_radius(unknown), unknown, nothing, nothing < 0)
+    label = np.array([int(branch.label) for branch in found])
+    least = np.array([len(branch.rows) for branch in found])
+    fit = fitted(lines, label, least, cloud.xyz)
+    return _assembled(skeleton, found, fit)
+
+
+def _assembled(skeleton: Skeleton, found: list[Branch], fit: Fit) -> Refined:
+    """One tree of the lines, each hung on the station of its parent at which it starts."""
+    lines, taper = fit.lines, fit.tapers
+    station = np.concatenate([[0], np.setdiff1d(np.arange(len(lines.xyz)), lines.first)])
+    row = np.full(len(lines.xyz), -1)
+    row[station] = np.arange(len(station))
+    parent = row[np.maximum(station - 1, 0)]
+    old = np.zeros(len(station), np.int64)
+    stands = np.zeros(len(station), np.bool_)
+    stands[0] = True
+    for number, branch in enumerate(found):
+        low, high = lines.start[number], lines.start[number + 1]
+        parent[row[low + 1]] = 0 if lines.parent[number] < 0 else row[fit.foot[number]]
+        place = _standing(lines.xyz[low + 1 : high], skeleton.xyz[branch.rows[1:]])
+        old[row[low + 1 : high]] = branch.rows[1:][
+            np.searchsorted(place, np.arange(high - low - 1)).clip(max=len(place) - 1)
+        ]
+        stands[row[low + 1 + place]] = True
+    parent[0] = -1
+    known = taper.unknown == Unknown.KNOWN
+    radius, error = (
+        np.where(known, values, np.nan)[station] for values in (taper.radius, taper.error)
+    )
+    tree = Skeleton(
+        lines.xyz[station], parent, skeleton.label[old], skeleton.confidence[old], radius,
+        np.where(stands, skeleton.superpoint[old], -1),
+    )  # fmt: skip
+    return Refined(tree, error, taper.unknown[station], supported(lines, fit.count)[station])
+
+
+def _standing(line: Floats, places: Floats) -> Ints:
+    """The stations of a line (S, 3) that stand for some places (R, 3), R <= S, in their order."""
+    square = ((line[:, None] - places[None]) ** 2).sum(axis=2)
+    rank = np.arange(len(places))
+    nearest = np.maximum.accumulate(square.argmin(axis=0) - rank)
+    return np.asarray(np.minimum(nearest, len(line) - len(places)) + rank)
