@@ -30,13 +30,16 @@ IN_PLACE = 0.015
 """A cut is in place so near to the true one along the branch, metres."""
 BESIDE = 0.025
 """A cut is on a branch whose axis is so near, metres: the views of a scan differ by several mm."""
+BLADE = 0.012
+"""A blade cuts what has its bark so near, metres."""
 
 
 @dataclass(frozen=True)
 class Judged:
     """A planned cut, what came of it, and how far along the branch it is off, metres.
 
-    `word`: right, or wrong on what: leader, support, trunk, side_branch, nothing.
+    `word`: right; needless, where the wood comes down with another cut; or wrong, on what: leader,
+    support, trunk, side_branch, nothing.
     """
 
     cut: Cut
@@ -80,13 +83,17 @@ def judged(tree: Tree, plan: Plan, rules: CutRules, seconds: float) -> Outcome:
     limbs = Limbs.of(whole)
     by_name = {limb.name: limb for limb in limbs.all}
     lines = [by_name[cut.branch] for cut in asked]
-    found = tuple(_judge(cut, asked, lines, whole) for cut in plan.cuts)
+    down = [limbs.beyond(limb, cut.along) for limb, cut in zip(lines, asked, strict=True)]
+    gone = set(np.flatnonzero(np.any(down, axis=0)).tolist()) if down else set[int]()
+    found = tuple(_judge(cut, asked, lines, whole, gone) for cut in plan.cuts)
     demanded = plan_cuts(shown(tree.truth, tree.counts).moved(to_house), None, rules).cuts
     met = tuple(_who_met(cut, found) for cut in demanded)
     return Outcome(demanded, met, found, plan, seconds)
 
 
-def _judge(cut: Cut, asked: tuple[Cut, ...], lines: list[Limb], whole: Skeleton) -> Judged:
+def _judge(
+    cut: Cut, asked: tuple[Cut, ...], lines: list[Limb], whole: Skeleton, gone: set[int]
+) -> Judged:
     """What a planned cut is: on a branch of which the rules ask for one, or on what else."""
     point = np.array(cut.point)
     best: tuple[float, float] | None = None
@@ -96,7 +103,8 @@ def _judge(cut: Cut, asked: tuple[Cut, ...], lines: list[Limb], whole: Skeleton)
             best = beside, along - true.along
     if best is not None:
         return Judged(cut, "right", best[1])
-    return Judged(cut, _wood_at(point, whole), np.nan)
+    word, row = _wood_at(point, whole)
+    return Judged(cut, "needless" if row in gone else word, np.nan)
 
 
 def _on(limb: Limb, point: Floats) -> tuple[float, float]:
@@ -112,11 +120,13 @@ def _on(limb: Limb, point: Floats) -> tuple[float, float]:
     return float(away), float(steps[np.linalg.norm(dense - point, axis=1).argmin()])
 
 
-def _wood_at(point: Floats, whole: Skeleton) -> str:
-    """The label of the wood at a point: that whose bark is nearest, within reach."""
+def _wood_at(point: Floats, whole: Skeleton) -> tuple[str, int]:
+    """The label and row of the wood at a point: that whose bark is nearest, within reach."""
     away = np.linalg.norm(whole.xyz - point, axis=1) - whole.radius
     row = int(away.argmin())
-    return Label(whole.label[row]).word if away[row] <= BESIDE else "nothing"
+    if away[row] > BLADE:
+        return "nothing", -1
+    return Label(whole.label[row]).word, row
 
 
 def _who_met(true: Cut, found: tuple[Judged, ...]) -> Judged | None:
@@ -147,7 +157,7 @@ def lines_of(outcomes: list[Outcome]) -> Iterator[str]:
     for name, some in (("all", planned), ("without needs_review", sure)):
         words = Counter(one.word for one in some)
         off = np.array([abs(one.off) for one in some if one.word == "right"])
-        wrong = len(some) - words["right"]
+        wrong = len(some) - words["right"] - words["needless"]
         share = wrong / len(some) if some else np.nan
         place = "-" if not len(off) else (
             f"{(off <= IN_PLACE).mean():.1%} of the right within 15 mm, "

@@ -8,7 +8,7 @@ import prunus
 HOME = Path(prunus.__file__).parent
 FLOORS = [
     {"cli"},
-    {"progress", "demo", "convert", "fusing", "batch", "experiment", "isolation", "judge"},
+    {"progress", "demo", "convert", "fusing", "batch", "cutting", "experiment", "isolation", "judge"},
     {"report", "evaluate", "simulate", "learn", "corrections"},
     {"pipeline", "graphs", "intake"},
     {"sensing", "search", "stages", "measure", "io"},

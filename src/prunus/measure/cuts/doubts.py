@@ -28,7 +28,7 @@ TOUCH = 0.04
 """The tip of a branch so near to another branch may be its foot, metres."""
 LEAST = 0.02
 """Confidences below are taken for it."""
-UNSURE = 0.25
+UNSURE = 0.50
 """A diameter whose standard deviation is a larger share of it is doubtful."""
 
 

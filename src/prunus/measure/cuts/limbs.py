@@ -19,7 +19,7 @@ LIKELY_RADIUS = {
 """Where a radius is unknown, metres; a cut that rests on one is reviewed."""
 STEP = 0.002
 """Where a branch comes out of its parent's bark is found to so many metres ..."""
-NEAR = 0.15
+NEAR = 0.30
 """... within so many metres of its start."""
 
 
