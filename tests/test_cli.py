@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -258,6 +259,49 @@ def test_skeletons_convert(tmp_path: Path, ending: str) -> None:
     assert (tmp_path / f"t{ending}").stat().st_size > 100
     if ending == ".json":
         assert (tmp_path / "t.json").read_bytes() == (tmp_path / "s.json").read_bytes()
+
+
+ENDINGS = [
+    ".glb", ".gltf", ".obj", ".mtg", ".cylinders.csv", ".treeqsm.csv", ".txt", ".mcap",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_skeletons_convert_to_wood_and_what_is_lost_is_said(tmp_path: Path, ending: str) -> None:
+    from prunus.io.skeletons import write_skeleton
+    from tests.drawn import tree
+
+    drawn = replace(tree(), superpoint=np.arange(len(tree())))
+    write_skeleton(tmp_path / "s.json", drawn)
+    done = prunus("convert", tmp_path / "s.json", tmp_path / f"t{ending}")
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / f"t{ending}").stat().st_size > 100
+    assert f"t{ending}: left out, as there is no place for it: superpoint\n" in done.stderr
+    unknown = f"the radius is unknown at {len(drawn)} of {len(drawn)} nodes: 5 mm was taken there"
+    assert (unknown in done.stderr) == (ending != ".mtg")
+    if ending not in (".glb", ".mcap"):
+        assert "nan" not in (tmp_path / f"t{ending}").read_text().lower()
+    write_skeleton(tmp_path / "base.json", tree("o"))
+    done = prunus("convert", tmp_path / "base.json", tmp_path / f"t{ending}")
+    assert done.exit_code == 2
+    assert "base.json: holds a base alone" in done.stderr
+
+
+def test_a_cloud_goes_into_a_bag_and_into_nothing_else(scan: Path, tmp_path: Path) -> None:
+    from prunus.io.skeletons import write_skeleton
+    from tests.drawn import tree
+
+    write_skeleton(tmp_path / "s.json", tree())
+    words = ["convert", tmp_path / "s.json", tmp_path / "t.mcap", "--cloud", scan]
+    assert prunus(*words).exit_code == 0
+    assert prunus("convert", tmp_path / "t.mcap", tmp_path / "back.xyz").exit_code == 0
+    assert len((tmp_path / "back.xyz").read_text().splitlines()) == 20_000
+    write_cloud(tmp_path / "utm.ply", np.array([[4e5, 5e6, 1.0], [4e5, 5e6, 2.0]]))
+    done = prunus(*words[:-1], tmp_path / "utm.ply", "--unit", "m")
+    assert "the points are in single precision: so far from the origin to 500 mm" in done.stderr
+    done = prunus("convert", tmp_path / "s.json", tmp_path / "t.glb", "--cloud", scan)
+    assert done.exit_code == 2
+    assert "t.glb: holds no cloud; expected a bag (.mcap)" in done.stderr
 
 
 def test_clouds_convert_and_unknown_kinds_do_not(scan: Path, tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import prunus
 HOME = Path(prunus.__file__).parent
 FLOORS = [
     {"cli"},
+    {"studio"},
     {"progress", "demo", "convert", "fusing", "batch", "cutting", "experiment", "isolation", "judge"},
     {"report", "evaluate", "simulate", "learn", "corrections"},
     {"pipeline", "graphs", "intake"},
@@ -20,6 +21,7 @@ FLOORS = [
 
 SAME_FLOOR = {
     ("cli", "cli"),
+    ("io", "measure"),
     ("rules", "grammar"),
     ("stages", "measure"),
     ("sensing", "stages"),

@@ -289,11 +289,9 @@ def train(
 
     try:
         with progress_bar() as bar:
-            if network == Network.ISOLATION:
-                report = isolation_school(folders, output, seed, epochs, jobs, bar_of(bar))
-            else:
-                course = Course(edge_net.value, start, seed, epochs, scans)
-                report = school(folders, output, course, jobs, bar_of(bar))
+            course = Course(edge_net.value, start, seed, epochs, scans)
+            teach = isolation_school if network == Network.ISOLATION else school
+            report = teach(folders, output, course, jobs, bar_of(bar))
     except PrunusError as error:
         _stop(error)
     if network == Network.ISOLATION:
@@ -382,6 +380,53 @@ def experiment(
 
 
 @app.command()
+def studio(
+    path: Annotated[Path, typer.Argument(help="A scan, a skeleton.json, or a folder of them.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="Folder in which the work is kept.")
+    ] = Path("prunus-studio"),
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="The next free one is taken; 0: any.")
+    ] = 8080,
+    host: Annotated[
+        str, typer.Option(help="Address to listen on; other machines need the token then.")
+    ] = "127.0.0.1",
+    token: Annotated[
+        str | None, typer.Option(help="Asked for on the page. [default: random, off this machine]")
+    ] = None,
+    no_open: Annotated[bool, typer.Option("--no-open", help="Open no browser.")] = False,
+    frame: Annotated[
+        Frame, typer.Option(help="Frame of the file; auto goes by the evidence in the cloud.")
+    ] = Frame.AUTO,
+    unit: Annotated[
+        Unit | None, typer.Option(help="Unit of the file. [default: m, checked]")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
+    params: Annotated[
+        Path | None,
+        typer.Option(help="Parameters as TOML, as every run writes it; 'paper': as in the paper."),
+    ] = None,
+) -> None:
+    """Look at trees, clean, correct and label them, on a page in the browser.
+
+    A folder of scans: `prunus studio scans/ -o work`
+
+    On another machine: `ssh -t -L 8080:localhost:8080 there prunus studio scans/ --no-open`
+    """
+    from prunus.corrections import Settings
+    from prunus.studio.start import open_studio
+
+    try:
+        settings = Settings(
+            frame=frame.value, unit=unit and unit.value, seed=seed,
+            params=_parameters(params, None, False),
+        )  # fmt: skip
+        open_studio(path, output, settings, host, port, token, not no_open, typer.echo)
+    except PrunusError as error:
+        _stop(error)
+
+
+@app.command()
 def fuse(
     rig: Annotated[Path, typer.Argument(help="Folder with rig.json, or with *_cloud.ply.")],
     output: Annotated[Path, typer.Option("-o", "--output", help="Cloud to write, as .ply.")],
@@ -458,19 +503,29 @@ def convert(
     source: Annotated[Path, typer.Argument(help="A skeleton (.json, .swc) or a point cloud.")],
     target: Annotated[Path, typer.Argument(help="What to write; the ending says which kind.")],
     unit: Annotated[Unit | None, typer.Option(help="Unit of a cloud. [default: m]")] = None,
+    cloud: Annotated[
+        Path | None, typer.Option(help="The cloud, to go into a bag (.mcap) with the tree.")
+    ] = None,
 ) -> None:
-    """Convert skeletons (to .json, .swc, .ply, .graphml) and clouds (to .ply, .xyz, .csv, .npz).
+    """Convert skeletons and clouds to what others read; says what a kind of file cannot hold.
 
-    For Blender: `prunus convert out/skeleton.json tree.ply`
+    Skeletons: .json .swc .ply .graphml .glb .gltf .obj .mtg .cylinders.csv .treeqsm.csv
+    .txt (raycloudtools) .mcap (ROS 2). Clouds: .ply .xyz .txt .csv .npy .npz.
+
+    For Blender, thick as it is: `prunus convert out/refined.json tree.glb`
+
+    For RViz or Foxglove: `prunus convert out/refined.json tree.mcap --cloud tree.ply`
 
     A cloud for another tool: `prunus convert tree.laz tree.xyz`
     """
     from prunus.convert import convert_file
 
     try:
-        convert_file(source, target, unit and unit.value)
+        notes = convert_file(source, target, unit and unit.value, cloud)
     except PrunusError as error:
         _stop(error)
+    for note in notes:
+        typer.echo(f"{target}: {note}", err=True)
 
 
 def _parameters(path: Path | None, points: str | None, no_isolate: bool) -> Parameters:

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from prunus.corrections import Class, Mark, MoveBase, PickBase, Rebuild, Refused, RemoveEdge
+from prunus.corrections import Brush, Class, Mark, MoveBase, PickBase, Rebuild, Refused, RemoveEdge
 from prunus.corrections.state import State, apply
 from prunus.model import Kind
 from prunus.pipeline import skeletonize
@@ -57,6 +57,15 @@ def test_what_was_marked_is_what_the_next_run_sees() -> None:
     assert after.result.isolated is None
     assert after.result.params.isolation.isolate == "never"
     assert after.params == at.params
+
+
+def test_taking_points_away_elsewhere_leaves_the_base_where_it_stands() -> None:
+    at = raw()
+    stands = at.draft.places[at.draft.base]
+    xyz = at.scan.xyz
+    top = outside(at, [*xyz[np.argmax(np.where(at.kind == Kind.TARGET, xyz[:, 2], -9.0))]])
+    after = apply(apply(at, Mark(Brush((tuple(top),), 0.3), Kind.STRAY)), Rebuild())
+    assert np.linalg.norm(after.draft.places[after.draft.base] - stands) < 0.1
 
 
 def test_a_run_forgets_the_corrections_before_it_but_not_the_base(machine: State) -> None:

@@ -83,6 +83,24 @@ def test_graphml_opens_in_networkx(tmp_path: Path) -> None:
     graph = nx.read_graphml(tmp_path / "s.graphml")
     assert graph.number_of_nodes() == len(tree())
     assert graph.nodes["0"]["z"] == 0
+    assert "radius" not in graph.nodes["0"]
+    assert "confidence" not in graph.edges["0", "1"]
+
+
+def test_swc_opens_in_morphio_with_its_radii_and_labels(tmp_path: Path) -> None:
+    morphio = pytest.importorskip("morphio")
+    morphio.set_maximum_warnings(0)
+    skeleton = tree().with_radius(np.full(len(tree()), 0.01))
+    write_swc(tmp_path / "s.swc", skeleton)
+    opened = morphio.Morphology(
+        str(tmp_path / "s.swc"), options=morphio.Option.allow_unifurcated_section_change
+    )
+    types = {int(section.type) for section in opened.sections}
+    assert types == {16, 17, 18, 19}
+    assert opened.diameters == pytest.approx(0.02)
+    assert {tuple(point) for point in opened.points.round(4).tolist()} == {
+        tuple(point) for point in skeleton.xyz.astype("f4").round(4).tolist()
+    }
 
 
 @pytest.mark.parametrize(

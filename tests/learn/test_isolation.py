@@ -1,6 +1,8 @@
 """Learning isolation: examples from simulated rows, a network that learns, and its file."""
 
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +19,7 @@ from prunus.learn.isolation import (
     row_examples_in,
     turned_at_random,
 )
-from prunus.learn.school import isolation_school
+from prunus.learn.school import Course, isolation_school
 from prunus.model import Kind
 from prunus.sensing.isolate import SHOWN, TOLD
 from prunus.simulate.orchard import simulate_tree
@@ -69,15 +71,22 @@ def test_turns_are_small_or_half_round_and_keep_lengths(rng: np.random.Generator
         assert turn[2, 2] > np.cos(np.radians(15))
 
 
+def silently(items: Iterable[Any], name: str, total: int) -> Iterable[Any]:
+    return items
+
+
 def test_a_folder_of_scans_gives_a_network_that_tells_kinds(
     orchard: Path, tmp_path: Path, example: RowExample, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(examples, "POINTS", (10_000, 20_000))
     weights = tmp_path / "mine.onnx"
-    report = isolation_school([orchard], weights, 0, 3, 1, lambda items, name, total: items)
+    report = isolation_school([orchard], weights, Course(epochs=3), 1, silently)
     assert report["trees"] == [4, 1]
     assert report["losses"][-1] < 0.8 * report["losses"][0]
     assert weights.with_suffix(".json").exists()
+    onward = Course(epochs=1, start=str(weights))
+    again = isolation_school([orchard], tmp_path / "more.onnx", onward, 1, silently)
+    assert again["losses"][0] < 0.8 * report["losses"][0]
     seen = example.pieces.seen_from(example.base[0])
     told = {"node": seen.node, "near": seen.near, "link": seen.link}
     kinds = open_network(weights, SHOWN, TOLD).run(["kind"], told)[0]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -92,7 +93,11 @@ def _cloud_of(path: Path, wanted: InputRecord) -> Path:
     )
 
 
-def run(source: Source, head: Head | None) -> Machine:
+def unseen(scan: Scan) -> None:
+    """Nobody wants to see the scan before the chain has run."""
+
+
+def run(source: Source, head: Head | None, seen: Callable[[Scan], None] = unseen) -> Machine:
     """Run the chain on a source, as the journal on it says where there is one."""
     settings, base, expected, notes = source.settings, source.base, source.expected, list[str]()
     if head is not None:
@@ -103,6 +108,7 @@ def run(source: Source, head: Head | None) -> Machine:
         if settings != source.settings:
             notes.append("frame, unit, parameters and seed are those of its journal")
     scan = open_scan(source.path, settings.frame, settings.unit)
+    seen(scan)
     if head is not None and scan.file.sha256 != head.input.sha256:
         raise PrunusError(
             f"{source.path}: is another file than its journal was made on "

@@ -99,17 +99,35 @@ def _marked(state: State, act: Mark) -> State:
 
 
 def _rebuilt(state: State) -> State:
-    """The chain on the points that are the target, from the base where one was picked."""
+    """The chain on the points that are the target."""
     target = state.kind == Kind.TARGET
     if not target.any():
         raise Refused("no point is marked as the target", "holds_the_tree")
     cloud, params = state.scan, state.params
     if state.marked:
         cloud, params = cloud.take(target), params.changed("isolation", isolate="never")
-    base = None if state.base is None else state.scan.to_input.apply(state.base)
+    base = _base_of_next(state, cloud)
     try:
         result = skeletonize(cloud, base, params, state.result.seed)
     except PrunusError as error:
         raise Refused(f"of the points left: {error}", "holds_the_tree") from error
     kind = state.kind if state.marked else _kinds(result)
     return replace(state, result=result, kind=kind, draft=Draft.of(result), held=NOTHING)
+
+
+def _base_of_next(state: State, cloud: PointCloud) -> Floats | None:
+    """Where the next run begins, in the frame of the file; None where it shall look itself.
+
+    That is the base that was picked, or, once points were marked, the one that stands, as long as
+    points are left around it: with fewer points the chain might find another.
+    """
+    base = state.base
+    if base is None and state.marked:
+        stands = state.draft.places[state.draft.base]
+        if np.linalg.norm(cloud.xyz - stands, axis=1).min() < AROUND:
+            base = stands
+    return None if base is None else state.scan.to_input.apply(base)
+
+
+AROUND = 0.20
+"""Points are left around a base where one is so near, metres."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 import threading
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Literal, Self
@@ -21,10 +22,18 @@ from prunus.corrections import lock
 from prunus.corrections.acts import Act, from_json, to_json
 from prunus.corrections.history import OTHER, History, gives
 from prunus.corrections.journal import End, Head, Journal
-from prunus.corrections.sources import Machine, Settings, run, source_from, superpoints_digest
+from prunus.corrections.sources import (
+    Machine,
+    Settings,
+    run,
+    source_from,
+    superpoints_digest,
+    unseen,
+)
 from prunus.corrections.state import State, apply, clear
 from prunus.corrections.timeline import Move, Timeline
 from prunus.errors import PrunusError
+from prunus.intake import Scan
 from prunus.io.classes import write_classes
 from prunus.io.safely import remove
 from prunus.io.skeletons import write_skeleton
@@ -36,14 +45,15 @@ SKELETON, CORRECTED, MASK = "skeleton.json", "corrected.json", "mask.ply"
 class Work:
     """A tree that is open; see `Work.open`.
 
-    `scan` is the input and how it was read; `notes` what a person should know of it; `read_only`
-    who else has it open, None where it may be changed.
+    `scan` is the input and how it was read, `base` the one given to the chain; `notes` what a
+    person should know of it; `read_only` who else has it open, None where it may be changed.
     """
 
     def __init__(self, folder: Path, machine: Machine, history: History, notes: list[str]) -> None:
         self.folder = folder
         self.scan = machine.scan
         self.settings = machine.settings
+        self.base = machine.base
         self.notes = notes
         self.read_only: str | None = None
         self._history = history
@@ -59,9 +69,11 @@ class Work:
         settings: Settings | None = None,
         *,
         read_only_if_locked: bool = True,
+        seen: Callable[[Scan], None] = unseen,
     ) -> Work:
         """Open a cloud, or a `skeleton.json` with its cloud, with all that was done to it before.
 
+        `seen` is given the scan once it is read, before the chain runs.
         Where a journal is in the folder, frame, unit, parameters and seed are its own. Raises
         PrunusError where the input cannot be read, the chain finds no tree in it, the journal is
         corrupt or was made on something else, or (unless reading will do) others have it open.
@@ -71,7 +83,7 @@ class Work:
         if holder is not None and not read_only_if_locked:
             raise PrunusError(f"{folder}: is open already, by {holder.told}")
         try:
-            return cls._opened(Path(source), folder, settings or Settings(), holder)
+            return cls._opened(Path(source), folder, settings or Settings(), holder, seen)
         except BaseException:
             if holder is None:
                 lock.release(folder)
@@ -79,12 +91,17 @@ class Work:
 
     @classmethod
     def _opened(
-        cls, source: Path, folder: Path, settings: Settings, holder: lock.Holder | None
+        cls,
+        source: Path,
+        folder: Path,
+        settings: Settings,
+        holder: lock.Holder | None,
+        seen: Callable[[Scan], None],
     ) -> Work:
         path = folder / book.NAME
         journal = book.read_journal(path)
         begun = journal if journal is not None and journal.lines else None
-        machine = run(source_from(source, settings), begun.head if begun else None)
+        machine = run(source_from(source, settings), begun.head if begun else None, seen)
         history = History(State.of(machine.result), Timeline.of(begun.lines if begun else ()))
         notes = [*machine.notes, *(_replayed(path, begun, history) if begun else [])]
         work = cls(folder, machine, history, notes)

@@ -112,12 +112,18 @@ def write_ply(path: str | Path, skeleton: Skeleton) -> None:
 
 
 def write_graphml(path: str | Path, skeleton: Skeleton) -> None:
-    """GraphML with all that `Skeleton.to_networkx` holds: for yEd, Gephi, igraph, networkx."""
+    """GraphML with all that `Skeleton.to_networkx` holds: for yEd, Gephi, igraph, networkx.
+
+    What is unknown has no entry: readers do not agree on how NaN is written.
+    """
     import networkx as nx
 
     graph = skeleton.to_networkx()
     for _, columns in graph.nodes(data=True):
         columns |= dict(zip("xyz", columns.pop("xyz"), strict=True))
+    for *_, columns in (*graph.nodes(data=True), *graph.edges(data=True)):
+        for name in [name for name, value in columns.items() if value != value]:
+            del columns[name]
     write_bytes(Path(path), "\n".join(nx.generate_graphml(graph)).encode())
 
 

@@ -20,6 +20,7 @@ from torch import Tensor, nn
 from prunus.io.scans import ScannedTree, read_scan
 from prunus.kernels.neighbours import nearest, within
 from prunus.learn.examples import VIEWS, by_scan, drawn
+from prunus.learn.start import go_on_from
 from prunus.learn.train import exported
 from prunus.measure import branches
 from prunus.model import Floats, Ints, Kind, Label, PointCloud, Skeleton
@@ -40,6 +41,9 @@ THINGS = 4
 BATCH = 2
 EPOCHS = 16
 RATE = 3e-3
+GOING_ON = 1e-3
+"""The rate of a network that goes on from another, in `MORE` epochs."""
+MORE = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,15 +184,18 @@ def kind_loss(found: Tensor, counts: Tensor) -> Tensor:
 
 
 def train_isolation(
-    training: list[RowExample], epochs: int, rng: np.random.Generator
+    training: list[RowExample], epochs: int, start: Path | None, rng: np.random.Generator
 ) -> Iterator[tuple[IsolationNet, float]]:
-    """The network and its mean loss after each epoch."""
+    """The network and its mean loss after each epoch; it goes on from the file `start`, if any."""
     torch.manual_seed(int(rng.integers(2**31)))
-    net = IsolationNet()
+    net, rate = IsolationNet(), RATE
+    if start is not None:
+        go_on_from(start, net)
+        rate = GOING_ON
     pairs = [(one, tree) for one in training for tree in one.asked]
-    optimizer = torch.optim.AdamW(net.parameters(), RATE, weight_decay=1e-3)
+    optimizer = torch.optim.AdamW(net.parameters(), rate, weight_decay=1e-3)
     steps = epochs * math.ceil(len(pairs) / BATCH) + 1
-    slower = torch.optim.lr_scheduler.OneCycleLR(optimizer, RATE, total_steps=steps)
+    slower = torch.optim.lr_scheduler.OneCycleLR(optimizer, rate, total_steps=steps)
     for _ in range(epochs):
         net.train()
         total = 0.0

@@ -104,9 +104,11 @@ TRAINING = 0.9
 
 
 def isolation_school(
-    inputs: list[Path], weights: Path, seed: int, epochs: int | None, jobs: int, watch: Watch[Any]
+    inputs: list[Path], weights: Path, course: Course, jobs: int, watch: Watch[Any]
 ) -> dict[str, Any]:
     """Train the isolation network on simulated scans; writes `weights` and a JSON beside it.
+
+    Of the course its start, a file, its seed and its epochs count.
 
     Returns what was written: the shares kept and removed on test trees, and how it was made.
     """
@@ -117,17 +119,19 @@ def isolation_school(
     folders = [scan for folder in inputs for scan in scans_in(folder)]
     if len(folders) < 5:
         raise PrunusError(f"{inputs[0]}: {len(folders)} simulated trees; expected at least 5")
+    seed, start = course.seed, None if course.start in (None, "scratch") else Path(course.start)
     made = list(watch(isolation.row_examples(folders, seed, jobs), "examples", len(folders)))
     first_test = int(TRAINING * len(folders))
     training = [example for of_scan in made[:first_test] for example in of_scan]
     test = [example for of_scan in made[first_test:] for example in of_scan]
-    epochs = epochs or isolation.EPOCHS
+    epochs = course.epochs or (isolation.EPOCHS if start is None else isolation.MORE)
     rng, losses = np.random.default_rng(seed), []
-    for net, loss in watch(isolation.train_isolation(training, epochs, rng), "epochs", epochs):
+    trained = isolation.train_isolation(training, epochs, start, rng)
+    for net, loss in watch(trained, "epochs", epochs):
         last = net
         losses.append(loss)
     report = {
-        "network": "isolation", "seed": seed, "epochs": epochs,
+        "network": "isolation", "seed": seed, "epochs": epochs, "from": start and start.name,
         "trees": [first_test, len(folders) - first_test], "losses": losses,
         "test": isolation.kept_and_removed(last, test),
     }  # fmt: skip

@@ -17,16 +17,27 @@ from prunus.learn.net import VALIDITY
 from prunus.model import Floats
 
 PREFIX = "net."
-"""In a file the parameters have the names that they have within `Calibrated`."""
+"""In a file the parameters have the names that they have within what is exported."""
 
 
 def start_from(path: Path, net: nn.Module) -> nn.Module:
-    """The network with the parameters of an ONNX file that `prunus train` wrote.
+    """The edge network with the parameters of an ONNX file that `prunus train` wrote.
 
     The stretch and shift of its calibration are taken into the last layer, so that it says what the
     file says. Raises PrunusError where the file is no network of this kind.
     """
     graph = _graph(path)
+    _load(net, graph, path)
+    _take_in(net, *_calibration(graph, path))
+    return net
+
+
+def go_on_from(path: Path, net: nn.Module) -> None:
+    """Give a network that needs no calibration the parameters of an ONNX file."""
+    _load(net, _graph(path), path)
+
+
+def _load(net: nn.Module, graph: Any, path: Path) -> None:
     held = _parameters(graph)
     wanted = {name: own for name, own in net.state_dict().items() if own.is_floating_point()}
     for name, own in wanted.items():
@@ -38,8 +49,6 @@ def start_from(path: Path, net: nn.Module) -> nn.Module:
             )
     state = {name: torch.from_numpy(np.array(held[name])) for name in wanted}
     net.load_state_dict(net.state_dict() | state)
-    _take_in(net, *_calibration(graph, path))
-    return net
 
 
 def _graph(path: Path) -> Any:

@@ -50,6 +50,16 @@ def branch_of_rows(branches: list[Branch], rows: int) -> Ints:
     return owner
 
 
+def orders(branches: list[Branch], rows: int) -> Ints:
+    """How many branches (B,) carry each, one on the other: 0 for what leaves the base."""
+    owner = branch_of_rows(branches, rows)
+    order = np.zeros(len(branches), np.int64)
+    for number, branch in enumerate(branches):
+        carrier = owner[branch.rows[0]]
+        order[number] = 0 if carrier < 0 else order[carrier] + 1
+    return order
+
+
 def lengths_by_label(skeleton: Skeleton) -> dict[Label, float]:
     """Metres of each label."""
     lengths = skeleton.lengths

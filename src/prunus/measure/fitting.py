@@ -17,12 +17,12 @@ from prunus.model import Bools, Floats, Ints
 
 REACHES = (0.05, 0.05, 0.04, 0.04, 0.04)
 """Points so near a line, metres, are its own; a round each."""
-DEEP = 0.75, 0.0003
+DEEP = 0.73, 0.0004
 """The axis lies behind the middle of the points by this share of the radius, and so many metres."""
-CORE = 2.5
+CORE = 2.0
 """Points over so many half widths beside a line hardly count ..."""
-CORE_LEAST = 0.012
-"""... and none under so many metres is that far."""
+CORE_LEAST = (0.030, 0.020, 0.012, 0.008, 0.006)
+"""... and none under so many metres is that far, a round each."""
 OUTSIDE = 1.4
 """A line takes points from where it is so many half widths of its parent beside it."""
 AHEAD = 6
@@ -31,10 +31,8 @@ SLIDE = 8
 """Its foot moves by so many stations in a round, at most."""
 HELD = 0.15
 """It moves where that brings the lines nearer by this share of its way."""
-TIED = 0.010
-"""Lines start on their parents, standard deviation in metres ..."""
-TIED_LAST = 0.001
-"""... and in the last round."""
+TIED = (0.02, 0.02, 0.02, 0.01, 0.001)
+"""Lines start on their parents: standard deviation in metres, a round each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,14 +62,13 @@ def fitted(lines: Centrelines, label: Ints, least: Ints, xyz: Floats) -> Fit:
         np.zeros(len(blank), bool),
         np.zeros(0, np.int64),
     )
-    for number, reach in enumerate(REACHES):
-        last = number == len(REACHES) - 1
-        fit = _round(fit, label, least, xyz, cameras, reach, last)
+    for number in range(len(REACHES)):
+        fit = _round(fit, label, least, xyz, cameras, number)
     return fit
 
 
 def _round(
-    fit: Fit, label: Ints, least: Ints, xyz: Floats, cameras: Floats, reach: float, last: bool
+    fit: Fit, label: Ints, least: Ints, xyz: Floats, cameras: Floats, number: int
 ) -> Fit:
     lines, was = drawn_out(fit.lines)
     view = View.of(lines, cameras)
@@ -81,10 +78,10 @@ def _round(
     front = replace(lines, xyz=lines.xyz - depth)
     half = np.hypot(radius / 0.93, noise)
     inside = within_parents(front.xyz, lines.start, lines.parent, OUTSIDE * half)
-    points = _shares(front, inside, half, xyz, reach)
+    points = _shares(front, inside, half, xyz, number)
     foot = _feet(lines, inside)
-    ties = _ties(lines, foot, depth, TIED_LAST if last else TIED)
-    middle = replace(front, xyz=smoothed(front, points, ties))
+    ties = _ties(lines, foot, depth, TIED[number])
+    middle = replace(front, xyz=smoothed(front, points, ties, noise))
     ribbons = Ribbons.of(middle, view, points)
     measured = np.where(inside, np.nan, ribbons.half)
     found = tapers(lines, label, measured)
@@ -97,7 +94,7 @@ def _round(
     out = Fit(
         cut, ribbons.count[stays], measured[stays], t, inside[stays], (np.cumsum(stays) - 1)[foot]
     )
-    return out if last else _even(out, least)
+    return out if number == len(REACHES) - 1 else _even(out, least)
 
 
 def _even(fit: Fit, least: Ints) -> Fit:
@@ -116,12 +113,12 @@ def _even(fit: Fit, least: Ints) -> Fit:
     )
 
 
-def _shares(front: Centrelines, inside: Bools, half: Floats, xyz: Floats, reach: float) -> Shares:
+def _shares(front: Centrelines, inside: Bools, half: Floats, xyz: Floats, number: int) -> Shares:
     rows = np.flatnonzero(~inside)
-    before, share, away = nearest_on_lines(xyz, front.xyz[rows], front.line[rows], reach)
+    before, share, away = nearest_on_lines(xyz, front.xyz[rows], front.line[rows], REACHES[number])
     near = np.flatnonzero(before >= 0)
     before, share, away = rows[before[near]], share[near], away[near]
-    core = np.maximum(CORE * half[before], CORE_LEAST)
+    core = np.maximum(CORE * half[before], CORE_LEAST[number])
     weight = 1 / (1 + (away / core) ** 2) ** 2
     weight[away > CORE * core] = 0
     points = xyz[near]

@@ -29,11 +29,18 @@ Those of the simulated orchard (`docs/simulation.md`), and half as much doubt ag
 """
 WIDE = 0.93
 """The radius is this share of half the width of a ribbon without noise."""
-ERR = (0.0006, 0.12)
-"""Standard deviation of half a width, metres, and what shares of the noise add to it."""
-ERR_OF_ALL = (0.0003, 0.22)
+SHOWS = {
+    Label.TRUNK: (0.3, 0.9),
+    Label.SUPPORT: (1.2, 1.0),
+    Label.LEADER: (1.3, 0.85),
+    Label.SIDE_BRANCH: (1.08, 0.92),
+}
+"""How much of the noise a ribbon shows, at the foot and at the tip (fitted, see bench.refine)."""
+ERR = (0.0005, 0.07, 0.30)
+"""Standard deviation of half a width: metres, a share of the radius, a share of the noise."""
+ERR_OF_ALL = (0.0003, 0.05, 0.20)
 """The same of an error that all half widths of a branch share."""
-ALIKE = 0.10
+ALIKE = 0.20
 """Half widths so near, metres, err alike."""
 THIN = 0.010
 """Where the usual radius is less, metres, the noise is read off the widths."""
@@ -81,10 +88,12 @@ def tapers(lines: Centrelines, label: Ints, half: Floats) -> Tapers:
     share = way / np.maximum(way[lines.last], STEP)[line]
     usual = np.array([USUAL[Label(number)] for number in label]).reshape(-1, 4)
     first = (1 - share) * usual[line, 0] + share * usual[line, 2]
-    noise = _noise(half, first)
+    shows = np.array([SHOWS[Label(number)] for number in label]).reshape(-1, 2)
+    shown = (1 - share) * shows[line, 0] + share * shows[line, 1]
+    noise = _noise(half, first, shown)
     seen = np.isfinite(half)
     rows = np.flatnonzero(seen)
-    fit = _Fit(line[rows], share[rows], half[rows], noise, usual)
+    fit = _Fit(line[rows], share[rows], half[rows], noise * shown[rows], usual)
     ends, doubt = fit.solved(len(label))
     mix = np.column_stack([1 - share, share])
     radius = np.maximum((mix * ends[line]).sum(axis=1), LEAST)
@@ -93,11 +102,13 @@ def tapers(lines: Centrelines, label: Ints, half: Floats) -> Tapers:
     return Tapers(radius, error, unknown, noise)
 
 
-def _noise(half: Floats, usual: Floats) -> float:
+def _noise(half: Floats, usual: Floats, shown: Floats) -> float:
+    """What adds to half a width where thin wood is as thick as usual."""
     thin = np.isfinite(half) & (usual < THIN)
     if not thin.any():
         return 0.0
-    return float(np.sqrt(max(np.median(half[thin] ** 2 - (usual[thin] / WIDE) ** 2), 0.0)))
+    square = (half[thin] ** 2 - (usual[thin] / WIDE) ** 2) / shown[thin] ** 2
+    return float(np.sqrt(max(np.median(square), 0.0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +118,7 @@ class _Fit:
     line: Ints
     share: Floats
     half: Floats
-    noise: float
+    noise: Floats
     usual: Floats
 
     def modelled(self, ends: Floats) -> tuple[Floats, Floats]:
@@ -120,7 +131,7 @@ class _Fit:
     def solved(self, lines: int) -> tuple[Floats, Floats]:
         """Radii (B, 2) at feet and tips, none thicker at the tip, and their covariance (B, 2, 2)."""
         before = np.column_stack([self.usual[:, 0], self.usual[:, 2], np.zeros(lines)])
-        shared = np.full(lines, ERR_OF_ALL[0] + ERR_OF_ALL[1] * self.noise)
+        shared = _norm(ERR_OF_ALL, self.usual[:, (0, 2)].mean(axis=1), float(self.noise.mean()) if len(self.noise) else 0.0)
         trust = np.column_stack([self.usual[:, 1], self.usual[:, 3], shared]) ** -2.0
         found, doubt = before, np.zeros((lines, 3, 3))
         for _ in range(ROUNDS):
@@ -138,9 +149,11 @@ class _Fit:
         return found[:, :2], doubt[:, :2, :2]
 
     @property
-    def err(self) -> float:
-        """Standard deviation of half a width, metres."""
-        return float(np.hypot(ERR[0], ERR[1] * self.noise))
+    def err(self) -> Floats:
+        """Standard deviations (W,) of half the widths, metres."""
+        usual = self.usual[self.line]
+        radius = (1 - self.share) * usual[:, 0] + self.share * usual[:, 2]
+        return _norm(ERR, radius, self.noise)
 
     def scatter(self, ends: Floats) -> Floats:
         """How far the widths of each line (B,) scatter, in units of `err`; NaN of too few."""
@@ -153,6 +166,11 @@ class _Fit:
         total = np.zeros((lines, *values.shape[1:]))
         np.add.at(total, self.line, values)
         return total
+
+
+def _norm(err: tuple[float, float, float], radius: Floats, noise: Floats | float) -> Floats:
+    """Standard deviations of three parts together: metres, of the radius, of the noise."""
+    return np.asarray(np.sqrt(err[0] ** 2 + (err[1] * radius) ** 2 + (err[2] * noise) ** 2))
 
 
 def _tapering(found: Floats, doubt: Floats) -> Floats:

@@ -10,8 +10,8 @@ from prunus.kernels.lines import solve_five
 from prunus.measure.centrelines import STEP, Centrelines
 from prunus.model import Floats, Ints
 
-ERR = 0.006
-"""Standard deviation of the middle of the points at one station, metres."""
+ERR = (0.004, 0.17)
+"""Standard deviation of the middle of the points at one station: metres, a share of the noise."""
 BENDS = 0.5
 """Lines turn by so much: mean square of the turn, radians, a metre."""
 STAYS = 0.015
@@ -49,7 +49,7 @@ class Ties:
     err: float
 
 
-def smoothed(lines: Centrelines, points: Shares, ties: Ties) -> Floats:
+def smoothed(lines: Centrelines, points: Shares, ties: Ties, noise: float) -> Floats:
     """The stations (S, 3) of smooth lines that pass through points and ties.
 
     What is least: the squared distance of the line from the points, in units of `ERR`, each station
@@ -58,7 +58,7 @@ def smoothed(lines: Centrelines, points: Shares, ties: Ties) -> Floats:
     """
     size, middle = len(lines.xyz), lines.xyz[0]
     total = np.bincount(points.station, points.weight, size)
-    say = points.weight / (total[points.station] + FEW) / ERR**2
+    say = points.weight / (total[points.station] + FEW) / (ERR[0] + ERR[1] * noise) ** 2
     diagonal, beside = _of_points(points, say, size)
     right = np.column_stack([
         _spread(points, say * (points.xyz[:, axis] - middle[axis]), size) for axis in range(3)

@@ -1,0 +1,1 @@
+"""The browser room where a person looks, cleans, corrects and labels."""

@@ -1,0 +1,192 @@
+"""Correct: remove, add, relabel, reattach, move the base, search again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from prunus.corrections import (
+    Act,
+    AddPath,
+    MoveBase,
+    Reattach,
+    Relabel,
+    RemoveBranch,
+    RemoveEdge,
+    Search,
+)
+from prunus.errors import PrunusError
+from prunus.model import Label
+from prunus.studio.modes.history import History
+from prunus.studio.modes.mode import Key, Mode, put
+from prunus.studio.modes.path import Path, Scope
+from prunus.studio.picking import Ray
+from prunus.studio.scene import PICKED
+from prunus.studio.words import block, quiet, word_of
+
+WORDS = tuple(word_of(label) for label in Label)
+ASKS = {
+    "pick": "Click a branch, then choose what to do with it.",
+    "path": "Click a node of the tree, then each stop of the new path; Enter ends it, Escape "
+    "gives it up.",
+    "reattach": "Click the node of the tree from which the picked edge is to come.",
+    "base": "Click where the trunk meets the ground.",
+}
+"""What a click is asked for, by tool."""
+
+
+class Correct(Mode):
+    """A click picks an edge, or is what the chosen tool asks for."""
+
+    name = "Correct"
+
+    def build(self) -> None:
+        """Make the controls."""
+        gui = self.desk.gui
+        self.tool, self.path, self.history = "pick", Path(), History(self.desk)
+        self.asked = gui.add_html(block(quiet(ASKS["pick"])))
+        self._group("Remove", {"edge": self._remove_edge, "branch": self._remove_branch},
+                    "Delete, Shift Delete")  # fmt: skip
+        self.reach = gui.add_dropdown("Relabel the", ("branch", "edge", "onward"),
+                                      hint="onward: from here to the tip")  # fmt: skip
+        self._group("as", {word: self._labels(Label(n)) for n, word in enumerate(WORDS)},
+                    "Keys 1 to 4")  # fmt: skip
+        self._group("Path", {"new": self._begin, "end": self._end, "give up": self._stop},
+                    "P, Enter, Escape")  # fmt: skip
+        self.label = gui.add_dropdown("Path is", WORDS, initial_value=WORDS[-1])
+        self.routed = gui.add_checkbox("routed", True, hint="Along the likeliest candidate edges")
+        self.snaps = gui.add_checkbox("at superpoints", True, hint="Else at points of the scan")
+        self._group("Move", {"edge": self._reattach, "base": self._base}, "N, M")
+        self._group("Search", {"again, holding this": self._search})
+        self.history.build()
+
+    def keys(self) -> list[Key]:
+        """All tools have one."""
+        labels = [
+            Key(str(n + 1), f"Relabel as {word}", self._labels(Label(n)))
+            for n, word in enumerate(WORDS)
+        ]
+        return [
+            Key("delete", "Remove the edge", self._remove_edge),
+            Key("delete", "Remove the branch", self._remove_branch, "shift"),
+            *labels,
+            Key("P", "New path", self._begin),
+            Key("enter", "End the path", self._end),
+            Key("escape", "Give up", self._stop),
+            Key("N", "Move the edge to another node", self._reattach),
+            Key("M", "Move the base", self._base),
+            *self.history.keys(),
+        ]
+
+    def leave(self) -> None:
+        """A path that was not ended is given up."""
+        self._stop()
+
+    def redraw(self) -> None:
+        """The stops of the path, which the tree may have come to hold."""
+        picture = self.desk.picture
+        xyz = np.zeros((0, 3))
+        if picture is not None and self.path.stops:
+            xyz = self.path.places(self._scope())
+        self.desk.painter.places("stops", xyz, PICKED)
+        self.desk.painter.mark("stops-line", np.stack([xyz[:-1], xyz[1:]], axis=1), PICKED, 3.0)
+
+    def clicked(self, ray: Ray, screen: tuple[float, float]) -> None:
+        """What the tool asked for."""
+        if self.tool == "path":
+            self._stop_at(ray)
+        elif self.tool == "reattach":
+            self._onto(ray)
+        elif self.tool == "base":
+            self._base_at(ray)
+        else:
+            self.desk.pick(ray)
+
+    def _scope(self) -> Scope:
+        picture, state = self.desk.picture, self.desk.tree.state
+        if picture is None or state is None:
+            raise PrunusError("the tree is not open yet")
+        return Scope(picture, state, self.desk.show.wishes.slab)
+
+    def _picked(self) -> int:
+        if self.desk.picture is None or not self.desk.picture.row(self.desk.picked):
+            raise PrunusError("no edge is picked; click one first")
+        assert self.desk.picked is not None
+        return self.desk.picked
+
+    def _remove_edge(self) -> None:
+        self.desk.act(RemoveEdge(self._picked()))
+
+    def _remove_branch(self) -> None:
+        self.desk.act(RemoveBranch(self._picked()))
+
+    def _labels(self, label: Label) -> Callable[[], None]:
+        def relabel() -> None:
+            reach: Any = self.reach.value
+            self.desk.act(Relabel(self._picked(), label, reach))
+
+        return relabel
+
+    def _search(self) -> None:
+        self.desk.act(Search())
+
+    def _begin(self) -> None:
+        self.path = Path()
+        self._ask("path")
+
+    def _stop_at(self, ray: Ray) -> None:
+        scope = self._scope()
+        self.path.add(scope, ray, self.snaps.value)
+        if len(self.path.stops) == 1 and isinstance(self.path.stops[0], int):
+            put(self.label, word_of(scope.suggested(self.path.stops[0])))
+        self.redraw()
+
+    def _end(self) -> None:
+        stops = tuple(self.path.stops)
+        if len(stops) < 2:
+            raise PrunusError("a path has at least two stops")
+        label = Label(WORDS.index(self.label.value))
+        if self.desk.act(AddPath(stops, label, self.routed.value)):
+            self._stop()
+
+    def _stop(self) -> None:
+        self.path = Path()
+        self._ask("pick")
+
+    def _reattach(self) -> None:
+        self._picked()
+        self._ask("reattach")
+
+    def _onto(self, ray: Ray) -> None:
+        node = self._scope().tree_node(ray)
+        if node is not None:
+            self._once(Reattach(self._picked(), node))
+
+    def _base(self) -> None:
+        self._ask("base")
+
+    def _base_at(self, ray: Ray) -> None:
+        scope = self._scope()
+        node = scope.tree_node(ray)
+        node = scope.superpoint(ray) if node is None else node
+        low = scope.picture.box[0]
+        self._once(MoveBase(scope.free_point(ray, low) if node is None else node))
+
+    def _once(self, act: Act) -> None:
+        """An act after which clicks pick again."""
+        self._ask("pick")
+        self.desk.act(act)
+
+    def _ask(self, tool: str) -> None:
+        self.tool = tool
+        self.asked.content = block(quiet(ASKS[tool]))
+        self.desk.show.lend(*(["superpoints"] if tool in ("path", "base") else []))
+        self.redraw()
+
+    def _group(
+        self, label: str, does: dict[str, Callable[[], None]], hint: str | None = None
+    ) -> None:
+        group = self.desk.gui.add_button_group(label, tuple(does), hint=hint)
+        group.on_click(lambda event: self.desk.try_to(does[event.target.value]))

@@ -1,0 +1,226 @@
+"""What a person does on the page, done by a browser."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from prunus.corrections import AddPath, Settings
+from prunus.io.skeletons import read_skeleton
+from prunus.model import Label
+from prunus.studio.shelf import Item
+from prunus.studio.tree import Tree
+from tests.studio.conftest import Remote, Visit, until
+
+Opened = Callable[..., Visit]
+
+
+def free_superpoint(visit: Visit) -> int:
+    """A superpoint that is not in the tree, seen apart from all others."""
+    graph, eye = visit.desk.picture.graph, visit.desk.eye
+    image = eye.image(graph.xyz) * [eye.width, eye.height]
+    apart = np.linalg.norm(image[:, None] - image[None], axis=2)
+    np.fill_diagonal(apart, np.inf)
+    lonely = np.argsort(-apart.min(axis=1)).tolist()
+    inside = ((image > 20) & (image < [eye.width - 20, eye.height - 20])).all(axis=1)
+    return int(next(n for n in lonely if n not in visit.nodes and inside[n]))
+
+
+def test_a_tree_is_opened_turned_corrected_and_found_again(opened: Opened, tmp_path: Path) -> None:
+    visit = opened()
+    visit.reads("edit distance")
+    first = visit.nodes
+
+    # Rotate: the camera goes round the tree.
+    was = visit.desk.eye.position
+    visit.page.mouse.move(550, 300)
+    visit.page.mouse.down()
+    visit.page.mouse.move(650, 320, steps=4)
+    visit.page.mouse.up()
+    until(lambda: np.linalg.norm(visit.desk.eye.position - was) > 0.1, "another camera")
+    visit.page.keyboard.press("f")
+    until(lambda: np.allclose(visit.desk.eye.position, was, atol=0.01), "the front view")
+
+    # Remove a branch, take that back, do it again.
+    visit.press("Correct")
+    side = visit.a_branch(Label.SIDE_BRANCH)
+    visit.click_edge(side)
+    visit.page.keyboard.press("Shift+Delete")
+    until(lambda: side not in visit.nodes, "the branch gone")
+    visit.page.keyboard.press("Control+z")
+    until(lambda: visit.nodes == first, "the branch back")
+    visit.page.keyboard.press("Control+y")
+    until(lambda: side not in visit.nodes, "the branch gone again")
+
+    # Relabel what the rules let be relabelled.
+    leader = visit.a_branch(Label.LEADER)
+    visit.click_edge(leader)
+    visit.page.keyboard.press("2")
+    visit.reads("instead:")
+    corrected = tmp_path / "oak" / "corrected.json"
+    assert len(read_skeleton(corrected)) == len(visit.nodes) < len(first)
+
+    # Reload: all is there.
+    left = visit.nodes
+    visit.page.reload()
+    visit.see_tree()
+    assert visit.nodes == left
+    visit.reads("1 act, all saved")
+
+
+def test_a_path_is_added_stop_by_stop(opened: Opened) -> None:
+    visit = opened()
+    visit.press("Correct")
+    first = visit.nodes
+    draft = visit.desk.tree.state.draft
+    visit.page.keyboard.press("p")
+    visit.reads("Click a node of the tree, then")
+    begin = visit.a_branch(Label.LEADER)
+    visit.click(draft.places[begin])
+    until(lambda: visit.desk.mode.path.stops == [begin], "the first stop")
+    end = free_superpoint(visit)
+    visit.click(draft.places[end])
+    until(lambda: visit.desk.mode.path.stops == [begin, end], "the second stop")
+    visit.page.get_by_label("routed").uncheck()
+    visit.press("end")
+    until(lambda: end in visit.nodes, "the path")
+    assert set(first) < set(visit.nodes)
+    assert isinstance(visit.desk.tree.work.acts[-1], AddPath)
+
+
+def test_points_are_marked_by_a_box_and_the_file_stays(
+    opened: Opened, orchard: Path, tmp_path: Path
+) -> None:
+    scan = (orchard / "oak.ply").read_bytes()
+    visit = opened()
+    visit.press("Clean")
+    visit.reads("Hold Shift")
+    before = visit.desk.tree.state.kind
+    visit.page.keyboard.down("Shift")
+    visit.page.mouse.move(300, 170)
+    visit.page.mouse.down()
+    visit.page.mouse.move(850, 320, steps=4)
+    visit.page.mouse.up()
+    visit.page.keyboard.up("Shift")
+    until(lambda: (visit.desk.tree.state.kind != before).any(), "points marked")
+    assert (tmp_path / "oak" / "mask.ply").exists()
+    visit.page.keyboard.press("Control+z")
+    until(lambda: (visit.desk.tree.state.kind == before).all(), "points as before")
+    assert (orchard / "oak.ply").read_bytes() == scan
+
+
+def test_edges_are_labelled_one_key_each(opened: Opened, tmp_path: Path) -> None:
+    visit = opened()
+    visit.press("Label")
+    visit.reads("0 of")
+    asked = [visit.desk.mode.queue.edge]
+    for key, count in (("v", 1), ("x", 2), ("3", 3)):
+        visit.page.keyboard.press(key)
+        visit.reads(f"{count} of")
+        asked.append(visit.desk.mode.queue.edge)
+    assert len(set(asked)) == 4
+    unsure = np.abs(visit.desk.picture.graph.confidence[asked] - 0.5)
+    assert (np.diff(unsure) >= 0).all()
+    assert (tmp_path / "oak" / "labels.jsonl").read_text().count("\n") == 4
+
+
+def test_a_broken_file_is_told_and_the_page_lives_on(opened: Opened) -> None:
+    visit = opened("")
+    visit.page.goto(visit.studio.url)
+    visit.reads("cannot be opened")
+    visit.page.keyboard.press("PageDown")
+    visit.page.keyboard.press("PageDown")
+    visit.see_tree()
+    visit.reads("edit distance")
+    assert visit.page.locator("img[src=x]").count() == 0
+
+
+def test_nothing_is_sent_before_the_token(opened: Opened) -> None:
+    visit = opened(token="open sesame")
+    received = list[bytes]()
+
+    def keep(frame: object) -> None:
+        received.append(frame if isinstance(frame, bytes) else str(frame).encode())
+
+    visit.page.on("websocket", lambda socket: socket.on("framereceived", keep))
+    visit.page.goto(visit.studio.url)
+    visit.page.get_by_role("button", name="Open", exact=True).wait_for()
+    assert not visit.studio.desks
+    assert received and not any(b"oak" in frame for frame in received)
+    visit.page.get_by_role("textbox").last.fill("open barley")
+    visit.press("Open")
+    visit.reads("This is not the token.")
+    assert not visit.studio.desks
+    visit.page.get_by_role("textbox").last.fill("open sesame")
+    visit.press("Open")
+    visit.see_tree()
+
+
+def test_the_second_studio_on_a_folder_only_reads(opened: Opened, tmp_path: Path) -> None:
+    one, other = opened(), opened()
+    one.reads("0 acts, all saved")
+    other.reads("read only")
+    other.press("Correct")
+    side = other.a_branch(Label.SIDE_BRANCH)
+    other.click_edge(side)
+    other.press("branch")
+    other.reads("This cannot be done")
+    assert side in other.nodes
+
+
+def test_a_killed_server_loses_nothing_that_was_shown(
+    browser: Any, orchard: Path, tmp_path: Path
+) -> None:
+    scan, work = orchard / "oak.ply", tmp_path / "work"
+    tree = Tree(Item("oak", scan, tmp_path / "aside"), Settings())
+    tree.watch(lambda: None)
+    until(lambda: tree.state, "the chain")
+    picture = tree.picture()
+    tree.close()
+    with running(scan, work) as (server, url), a_page(browser) as page:
+        visit = Remote(page, picture)
+        visit.come(url)
+        visit.press("Correct")
+        for count, node in enumerate(visit.branches_apart(Label.SIDE_BRANCH)[:2], 1):
+            visit.click_edge(node)
+            visit.reads("leaves leader")
+            page.keyboard.press("Shift+Delete")
+            visit.reads(f"{count} act")
+        saved = (work / "oak" / "corrected.json").read_bytes()
+        visit.press("undo")
+        server.kill()
+        server.wait()
+    with running(scan, work) as (_, url), a_page(browser) as page:
+        Remote(page, picture).come(url)
+    acts = (work / "oak" / "journal.jsonl").read_text().splitlines()[1:]
+    assert len(acts) in (2, 3)
+    again = (work / "oak" / "corrected.json").read_bytes()
+    assert (again == saved) == (len(acts) == 2)
+
+
+@contextmanager
+def running(scan: Path, work: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """The command as a person runs it, and where it says the page is."""
+    command = ["-m", "prunus.cli", "studio", str(scan), "-o", str(work), "--port", "0", "--no-open"]
+    server = subprocess.Popen([sys.executable, *command], stdout=subprocess.PIPE, text=True)
+    assert server.stdout is not None
+    try:
+        yield server, server.stdout.readline().split()[-1]
+    finally:
+        server.send_signal(signal.SIGINT)
+        server.wait()
+        server.stdout.close()
+
+
+@contextmanager
+def a_page(browser: Any) -> Iterator[Any]:
+    page = browser.new_page(viewport={"width": 1280, "height": 800})
+    yield page
+    page.close()
