@@ -16,9 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from prunus.experiment.orchard import Tree, tree_of
+from prunus.kernels.away import away_from
 from prunus.measure import shown
 from prunus.measure.cuts import Cut, CutRules, Plan, plan_cuts, shipped_rules
-from prunus.measure.cuts.limbs import Limb, Limbs, away_from
+from prunus.measure.cuts.limbs import Limb, Limbs
 from prunus.measure.refine import refined
 from prunus.model import Floats, Label, Skeleton
 from prunus.params import Parameters

@@ -77,9 +77,7 @@ def _on_skeleton(source: Source, rules: CutRules) -> PlanFile:
     in_house = skeleton.moved(cloud.to_input.inverse())
     plan = plan_cuts(refined(in_house, _own(cloud, in_house)), cloud.xyz, rules)
     notes += scan.notes
-    return plan_file(
-        plan, cloud.to_input, skeleton=path.name, input=scan.record, notes=notes
-    )
+    return plan_file(plan, cloud.to_input, skeleton=path.name, input=scan.record, notes=notes)
 
 
 def _scan_of(source: Source, record: InputRecord | None) -> Scan:
@@ -97,7 +95,7 @@ def _own(cloud: PointCloud, skeleton: Skeleton) -> PointCloud:
 
 
 def _upright(skeleton: Skeleton, frame: str) -> Floats:
-    """The rotation (3, 3) into the house frame: as asked, else as leaders, or all wood, point up."""
+    """The rotation (3, 3) into the house frame: as asked, else such that leaders point up."""
     if frame != "auto":
         return FRAMES[frame]
     leaders = skeleton.edges_with(Label.LEADER)

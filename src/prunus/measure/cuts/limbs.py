@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from prunus.kernels.away import away_from
 from prunus.measure.branches import Branch, branch_of_rows, branches
 from prunus.measure.names import branch_names
 from prunus.model import Bools, Floats, Ints, Label, Skeleton
@@ -142,21 +143,12 @@ def _out_of_bark(xyz: Floats, along: Floats, above: Limb, radius: float) -> floa
         radius = LIKELY_RADIUS[above.label]
     steps = np.arange(0.0, min(along[-1], NEAR), STEP)
     points = np.column_stack([np.interp(steps, along, xyz[:, axis]) for axis in range(3)])
-    clear = away_from(points, _near(above.xyz, xyz[0])) >= radius
+    clear = away_from(points, stretch_near(above.xyz, xyz[0])) >= radius
     return float(steps[clear.argmax()]) if clear.any() else float(along[-1])
 
 
-def _near(line: Floats, place: Floats) -> Floats:
-    """The stretch of a line (R, 3) that comes near a place (3,) on it."""
+def stretch_near(line: Floats, place: Floats) -> Floats:
+    """The stretch of a line (R, 3) that comes near a place (3,) on it or beside it."""
     rows = np.flatnonzero(((line - place) ** 2).sum(axis=1) <= (2 * NEAR) ** 2)
     low, high = (rows[0], rows[-1]) if len(rows) else (0, len(line))
     return line[max(low - 1, 0) : high + 2]
-
-
-def away_from(points: Floats, line: Floats) -> Floats:
-    """The distance (N,) of points (N, 3) from a line of nodes (R, 3)."""
-    start, step = line[:-1], np.diff(line, axis=0)
-    square = np.maximum((step**2).sum(axis=1), 1e-18)
-    off = points[:, None] - start
-    share = np.clip(np.einsum("nrk,rk->nr", off, step) / square, 0, 1)
-    return np.asarray(np.linalg.norm(off - share[..., None] * step, axis=2).min(axis=1))

@@ -10,20 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.kernels.neighbours import nearest
-from prunus.measure.cuts.doubts import confidence_of, doubts_of, traits_of
+from prunus.measure.cuts.confidence import confidence_of
+from prunus.measure.cuts.doubts import doubts_around, doubts_of
 from prunus.measure.cuts.limbs import Limbs
-from prunus.measure.cuts.reach import (
-    AT_BLADE,
-    SMEAR,
-    Approach,
-    approach,
-    blade_normal,
-    obstacles,
-    samples,
-)
+from prunus.measure.cuts.reach import Approach, approach, around, blade_normal, samples
 from prunus.measure.cuts.rules import Demand, Left, verdicts
 from prunus.measure.cuts.settings import CutRules, shipped_rules
+from prunus.measure.cuts.traits import Traits, traits_of
 from prunus.measure.refine import Refined
 from prunus.model import Bools, Floats, Skeleton
 
@@ -55,6 +48,7 @@ class Cut:
     removed_volume: float
     confidence: float
     reasons: tuple[str, ...]
+    traits: Traits
 
     @property
     def needs_review(self) -> bool:
@@ -84,84 +78,55 @@ def plan_cuts(
     limbs = Limbs.of(tree.skeleton)
     said = verdicts(limbs, rules)
     demands = [one for one in said if isinstance(one, Demand)]
-    around = np.array([one.limb.at(one.along) for one in demands]).reshape(-1, 3)
-    near = None if scan is None else obstacles(scan, around)
-    cuts = tuple(_cut(limbs, tree, one, near, rules) for one in demands)
-    return Plan(cuts, tuple(one for one in said if isinstance(one, Left)), rules)
+    places = np.array([one.limb.at(one.along) for one in demands]).reshape(-1, 3)
+    near = [None] * len(demands) if scan is None else around(scan, places)
+    cuts = [_cut(limbs, tree, *pair, rules) for pair in zip(demands, near, strict=True)]
+    return Plan(tuple(cuts), tuple(one for one in said if isinstance(one, Left)), rules)
 
 
 def as_it_is(skeleton: Skeleton) -> Refined:
     """A skeleton that was not refined: its radii without doubt, all of it seen."""
-    known = np.isfinite(skeleton.radius)
-    error = np.where(known, 0.0, np.nan)
+    error = np.where(np.isfinite(skeleton.radius), 0.0, np.nan)
     return Refined(skeleton, error, np.zeros(len(skeleton), np.int64), np.ones(len(skeleton), bool))
 
 
-def _cut(limbs: Limbs, tree: Refined, demand: Demand, near: Floats | None, rules: CutRules) -> Cut:
-    limb = demand.limb
-    point, heading = limb.at(demand.along), limb.heading(demand.along)
-    traits = traits_of(limbs, tree, demand)
-    confidence = confidence_of(demand, traits)
-    reasons = doubts_of(demand, traits, confidence, rules.review)
-    gone = limbs.beyond(limb, demand.along)
+def _cut(
+    limbs: Limbs, tree: Refined, demand: Demand, points: Floats | None, rules: CutRules
+) -> Cut:
+    limb, along = demand.limb, demand.along
+    point, heading = limb.at(along), limb.heading(along)
+    gone = limbs.beyond(limb, along)
+    traits = traits_of(limbs, tree, demand, points)
+    confidence = confidence_of(limb.label, traits)
+    reasons = doubts_of(demand, traits, confidence, rules)
     way, normal = None, heading
-    if near is None:
+    if points is None:
         reasons.append("no cloud: what stands in the way is not known")
     else:
-        removed = _wood(tree.skeleton, gone, point)
-        way = approach(point, heading, near, removed)
+        beyond = samples(tree.skeleton.xyz, tree.skeleton.parent, np.flatnonzero(gone))
+        way = approach(point, heading, points, np.concatenate([point[None], beyond]))
         normal = blade_normal(heading, np.array(way.direction))
-        reasons += _crowded(limbs, demand, near, point, gone, rules)
-        if way.half_angle < rules.review.free_angle:
-            reasons.append(f"no way to it is free within {rules.review.free_angle:g} degrees")
-    if demand.rule != "side_branches" and getattr(rules, demand.rule).always_review:
-        reasons.append("it goes through a leader")
+        reasons += doubts_around(limbs, demand, gone, points, way, rules)
     length, volume = _removed(tree.skeleton, gone, demand)
     return Cut(
         f"{demand.rule}:{limb.name.replace(' ', '-')}", limb.name, demand.rule, demand.because,
         _point(point), _point(normal), _point(heading), way, traits.diameter, traits.doubt,
-        demand.stub, demand.along, length, volume, confidence, tuple(reasons),
+        demand.stub, along, length, volume, confidence, tuple(reasons), traits,
     )  # fmt: skip
-
-
-def _crowded(
-    limbs: Limbs, demand: Demand, near: Floats, point: Floats, gone: Bools, rules: CutRules
-) -> list[str]:
-    """Other wood, or what else stands there, too near to the blade."""
-    reach = rules.review.other_wood
-    skeleton = limbs.skeleton
-    here = near[np.linalg.norm(near - point, axis=1) < reach + AT_BLADE]
-    own = np.flatnonzero(gone | np.isin(limbs.owner, [demand.limb.number, demand.limb.parent]))
-    own = own[own > 0]
-    mine = samples(skeleton.xyz, skeleton.parent, own)
-    fat = SMEAR + float(np.nan_to_num(skeleton.radius[own]).max(initial=0.01))
-    strange = here[nearest(here, mine, fat) < 0] if len(here) else here
-    away = np.linalg.norm(strange - point, axis=1)
-    if not (away < reach).any():
-        return []
-    return [f"something else stands {1e3 * away.min():.0f} mm from the blade"]
-
-
-def _wood(skeleton: Skeleton, gone: Bools, point: Floats) -> Floats:
-    """Samples (S, 3) of the wood that comes down, the cut itself the first."""
-    beyond = samples(skeleton.xyz, skeleton.parent, np.flatnonzero(gone))
-    return np.concatenate([point[None], beyond])
 
 
 def _removed(skeleton: Skeleton, gone: Bools, demand: Demand) -> tuple[float, float]:
     """Length and volume of what comes down; a radius that is unknown is taken from those known."""
+    limb = demand.limb
     length = np.where(gone, skeleton.lengths, 0.0)
-    first = np.flatnonzero(gone & np.isin(np.arange(len(gone)), demand.limb.rows))
-    if len(first):
-        start = demand.limb.along[np.searchsorted(demand.limb.rows, first[0])]
-        length[first[0]] = start - demand.along
-    else:
-        return float(demand.limb.along[-1] - demand.along), math.nan
-    known = gone & np.isfinite(skeleton.radius)
+    beyond = np.flatnonzero(gone[limb.rows] & (limb.along > demand.along))
+    if len(beyond) == 0:
+        return float(limb.along[-1] - demand.along), math.nan
+    length[limb.rows[beyond[0]]] = limb.along[beyond[0]] - demand.along
+    radius, known = skeleton.radius, gone & np.isfinite(skeleton.radius)
     if not known.any():
         return float(length.sum()), math.nan
-    usual = float(np.median(skeleton.radius[known]))
-    radius = np.where(np.isfinite(skeleton.radius), skeleton.radius, usual)
+    radius = np.where(np.isfinite(radius), radius, np.median(radius[known]))
     return float(length.sum()), float((math.pi * radius**2 * length).sum())
 
 

@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from prunus.kernels.neighbours import nearest
+from prunus.kernels.neighbours import nearest, within
 from prunus.model import Floats, Ints
 from prunus.model.arrays import cubes
 
@@ -22,7 +22,7 @@ AT_BLADE = 0.02
 SMEAR = 0.015
 """Points so near to the wood that comes down are taken for it, metres."""
 THIN = 0.010
-"""The scan is thinned to one point in cubes of this side, metres; a point stands for half of it."""
+"""One point in cubes of this side is looked at, metres, and stands for half of it."""
 SHELLS = (AT_BLADE, 0.05, 0.12, FREE)
 """Points between two of these distances, metres, are taken to be as thick as the nearest."""
 ENOUGH = 30.0
@@ -35,7 +35,6 @@ DIRECTIONS = 600
 """Directions of the sphere that are tried, those from behind left out: some 9 degrees apart."""
 SQUARE, FRONT = 0.2, 0.1
 """A degree away from square, or from straight ahead, is worth so many degrees of free cone."""
-TINY = 1e-9
 
 
 @dataclass(frozen=True)
@@ -51,16 +50,12 @@ class Approach:
     free_within: float
 
 
-def obstacles(scan: Floats, around: Floats) -> Floats:
-    """The points (Q, 3) of a scan that may stand in the way of cuts (C, 3), thinned."""
-    if len(around) == 0:
-        return scan[:0]
-    low, high = around.min(axis=0) - FREE, around.max(axis=0) + FREE
-    inside = scan[((scan >= low) & (scan <= high)).all(axis=1)]
-    if len(inside) == 0:
-        return inside
-    _, first = np.unique(cubes(inside, THIN), return_index=True)
-    return inside[first]
+def around(scan: Floats, cuts: Floats) -> list[Floats]:
+    """The points of a scan (P, 3) that are near enough to matter to each of some cuts (C, 3)."""
+    if len(cuts) == 0 or len(scan) == 0:
+        return [scan[:0]] * len(cuts)
+    start, members = within(np.ascontiguousarray(scan), cuts, FREE)
+    return [scan[members[low:high]] for low, high in pairwise(start)]
 
 
 def ways() -> Floats:
@@ -80,22 +75,19 @@ def approach(point: Floats, heading: Floats, points: Floats, removed: Floats) ->
     """The best way to a cut at a point (3,) of a branch that goes on along a heading (3,).
 
     `points` (Q, 3) stand in the way, save those of the `removed` wood, given as samples (S, 3).
-    Raises nothing: where no way is free the best of them has no cone.
+    Where no way is free, the best of them has no cone.
     """
-    off = points - point
-    away = np.linalg.norm(off, axis=1)
-    near = np.flatnonzero((away > AT_BLADE) & (away < FREE))
-    if len(removed):
-        near = near[nearest(points[near], removed, SMEAR) < 0]
+    off, away = _in_the_way(point, points, removed)
     square = np.degrees(np.arcsin(np.clip(np.abs(WAYS @ heading), 0, 1)))
     rows = np.flatnonzero(square <= OBLIQUE)
-    free = _free_angles(WAYS[rows], off[near], away[near])
+    free = _free_angles(WAYS[rows], off, away)
     front = np.degrees(np.arccos(np.clip(-WAYS[rows, 1], -1, 1)))
     worth = np.minimum(free, ENOUGH) - SQUARE * square[rows] - FRONT * front
     best = int(worth.argmax())
     way = WAYS[rows[best]]
-    clear = FREE if free[best] > 0 else _first(way, off[near], away[near])
-    return Approach((*(-way).tolist(),), float(free[best]), clear)
+    clear = FREE if free[best] > 0 else _first(way, off, away)
+    x, y, z = (-way).tolist()
+    return Approach((x, y, z), float(free[best]), clear)
 
 
 def blade_normal(heading: Floats, direction: Floats) -> Floats:
@@ -104,12 +96,23 @@ def blade_normal(heading: Floats, direction: Floats) -> Floats:
     return np.asarray(normal / np.linalg.norm(normal))
 
 
+def _in_the_way(point: Floats, points: Floats, removed: Floats) -> tuple[Floats, Floats]:
+    """From a cut to the points that may stand in the way (Q, 3), thinned, and how far (Q,)."""
+    away = np.linalg.norm(points - point, axis=1)
+    some = points[(away > AT_BLADE) & (away < FREE)]
+    if len(some):
+        _, first = np.unique(cubes(some, THIN), return_index=True)
+        some = some[first]
+    if len(some) and len(removed):
+        some = some[nearest(some, removed, SMEAR) < 0]
+    off = some - point
+    return off, np.linalg.norm(off, axis=1)
+
+
 def _free_angles(ways: Floats, off: Floats, away: Floats) -> Floats:
     """The half angle (D,), degrees, of the cone about each way that holds no point; 0 to 90."""
-    if len(off) == 0:
-        return np.full(len(ways), 90.0)
     cosine = np.array([_most(ways, off, away, *shell) for shell in pairwise(SHELLS)])
-    thick = np.arcsin(np.minimum(THIN / 2 / np.array(SHELLS[:-1]), 1))
+    thick = np.arcsin(THIN / 2 / np.array(SHELLS[:-1]))
     angle = np.arccos(np.clip(cosine, -1, 1)) - thick[:, None]
     return np.asarray(np.degrees(np.clip(angle.min(axis=0), 0, np.pi / 2)))
 

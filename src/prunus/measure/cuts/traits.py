@@ -1,0 +1,168 @@
+"""What is known of a branch that is to be cut: by its edges, its shape, and points near it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from prunus.kernels.away import away_from
+from prunus.kernels.neighbours import within
+from prunus.measure.cuts.limbs import LIKELY_RADIUS, Limb, Limbs, stretch_near
+from prunus.measure.cuts.rules import Demand
+from prunus.measure.refine import Refined
+from prunus.model import Floats
+
+CLEAR = 0.010
+"""Points over so many metres off the bark of the parent are not the parent's."""
+AROUND = 0.18
+"""Points farther from the cut are not looked at, metres."""
+OUTSET, ONWARD = 0.04, 0.12
+"""A branch bends at its foot when its first so many metres turn into those up to there."""
+AT_CUT = 0.03
+"""Points so near to the cut tell whether a thin branch is there, metres."""
+LINE = (-0.01, 0.05, 0.025)
+"""The line of a branch is that of points so far along from the cut, from and to, and beside it."""
+FEWEST = 6
+"""Fewer points tell no line."""
+NO_LINE = 0.02
+"""Where they tell none, it counts as so far aside, metres."""
+BACK = (0.02, 0.10, 0.01)
+"""Wood is looked for behind the parent from here to there, metres, in such steps."""
+BESIDE = 0.012
+"""A place there has wood where points lie so near ..."""
+SOME = 3
+"""... and there are so many of them."""
+TINY = 1e-9
+
+
+@dataclass(frozen=True)
+class Traits:
+    """What is known of a branch to be cut; NaN where nothing is.
+
+    From its edges: `least`, the least confidence of its own, `path`, of those from the base to it,
+    and `seen`, the share of its length with points. From its shape: `length` and `diameter` at the
+    cut with its standard deviation `doubt`, metres; `thick`, that over its parent's; `bend` at its
+    foot, degrees; `slant`, how far it runs in its parent's bark over the parent's radius; `touch`,
+    metres from its tip to the nearest branch that is not its own, `touched`.
+
+    From the points: `spread`, their mean distance from its axis at the cut, metres; `aside`, how
+    far from the cut the line through them passes; `behind`, how much of the straight way back
+    beyond the parent has wood, as where a branch of another leader passes by.
+    """
+
+    least: float
+    path: float
+    seen: float
+    length: float
+    diameter: float
+    doubt: float
+    thick: float
+    bend: float
+    slant: float
+    touch: float
+    touched: str
+    spread: float = math.nan
+    aside: float = math.nan
+    behind: float = math.nan
+
+
+def traits_of(limbs: Limbs, tree: Refined, demand: Demand, points: Floats | None) -> Traits:
+    """The traits of the branch that a demand cuts; `points` (Q, 3) of the scan around the cut."""
+    limb, skeleton = demand.limb, tree.skeleton
+    rows = limb.rows[1:]
+    parent = limbs.parent_of(limb)
+    radius = _parent_radius(limbs, limb)
+    diameter = 2 * limb.value_at(demand.along, skeleton.radius)
+    touch, touched = _nearest_other(limbs, limb)
+    by_points = (
+        {} if points is None or parent is None
+        else _from_points(limb, parent, radius, demand.along, points)
+    )  # fmt: skip
+    return Traits(
+        least=_least(skeleton.confidence[rows]),
+        path=_least(skeleton.confidence[limbs.path_to(limb)]),
+        seen=float(np.average(tree.seen[rows], weights=skeleton.lengths[rows] + TINY)),
+        length=limb.reach,
+        diameter=diameter,
+        doubt=2 * limb.value_at(demand.along, tree.radius_error),
+        thick=diameter / (2 * radius),
+        bend=_bend(limb),
+        slant=limb.bark / radius,
+        touch=touch,
+        touched=touched,
+        **by_points,
+    )
+
+
+def _parent_radius(limbs: Limbs, limb: Limb) -> float:
+    radius = float(limbs.skeleton.radius[limb.rows[0]])
+    parent = limbs.parent_of(limb)
+    return radius if math.isfinite(radius) or parent is None else LIKELY_RADIUS[parent.label]
+
+
+def _bend(limb: Limb) -> float:
+    """The turn, degrees, between the first of a branch outside the bark and what comes then."""
+    foot, knee, on = (limb.at(limb.bark + way) for way in (0.0, OUTSET, ONWARD))
+    return math.degrees(math.acos(np.clip(_unit(knee - foot) @ _unit(on - knee), -1, 1)))
+
+
+def _nearest_other(limbs: Limbs, limb: Limb) -> tuple[float, str]:
+    """How near another branch comes to the tip of a limb, and which; not its parent or its own."""
+    best, name = math.inf, ""
+    for other in limbs.all:
+        if limb.number in (other.number, other.parent) or other.number == limb.parent:
+            continue
+        away = float(away_from(limb.xyz[-1:], other.xyz)[0])
+        if away < best:
+            best, name = away, other.name
+    return best, name
+
+
+def _from_points(
+    limb: Limb, parent: Limb, radius: float, along: float, points: Floats
+) -> dict[str, float]:
+    cut, heading = limb.at(along), limb.heading(along)
+    near = points[((points - cut) ** 2).sum(axis=1) < AROUND**2]
+    clear = near[away_from(near, stretch_near(parent.xyz, cut)) > radius + CLEAR]
+    beside = away_from(clear, stretch_near(limb.xyz, cut))
+    here = np.linalg.norm(clear - cut, axis=1) < AT_CUT
+    return {
+        "spread": float(beside[here].mean()) if here.any() else AT_CUT,
+        "aside": _aside(clear, beside, cut, heading),
+        "behind": _behind(limb, radius, along, clear),
+    }
+
+
+def _aside(clear: Floats, beside: Floats, cut: Floats, heading: Floats) -> float:
+    """How far from the cut the main axis of the points along the branch passes."""
+    low, high, most = LINE
+    way = (clear - cut) @ heading
+    some = clear[(way > low) & (way < high) & (beside < most)]
+    if len(some) < FEWEST:
+        return NO_LINE
+    middle = some.mean(axis=0)
+    axis = np.linalg.svd(some - middle, full_matrices=False)[2][0]
+    off = cut - middle
+    return float(np.linalg.norm(off - (off @ axis) * axis))
+
+
+def _behind(limb: Limb, radius: float, along: float, clear: Floats) -> float:
+    """The share of the places straight behind the parent that have wood."""
+    foot = limb.at(limb.bark)
+    ahead = _unit(limb.at(along + AT_CUT * 2) - foot)
+    places = foot - (2 * radius + np.arange(*BACK))[:, None] * ahead
+    if len(clear) == 0:
+        return 0.0
+    start, _ = within(np.ascontiguousarray(clear), places, BESIDE)
+    return float((np.diff(start) >= SOME).mean())
+
+
+def _least(values: Floats) -> float:
+    known = values[np.isfinite(values)]
+    return float(known.min()) if len(known) else math.nan
+
+
+def _unit(vector: Floats) -> Floats:
+    return np.asarray(vector / max(float(np.linalg.norm(vector)), TINY))
