@@ -25,7 +25,7 @@ from prunus.experiment.orchard import tree_of
 from prunus.kernels.neighbours import nearest, within
 from prunus.measure import Branch, branches, shown
 from prunus.measure.refine import Refined, refined
-from prunus.model import Bools, Floats, Ints, Label, PointCloud, Skeleton
+from prunus.model import Bools, Floats, Label, PointCloud, Skeleton
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.simulate.scan import Scan, simulate_scan
@@ -223,8 +223,8 @@ def lines_of(figures: dict[str, Figures]) -> Iterator[str]:
     for name, columns in sorted(figures.items()):
         all_ = {key: np.concatenate(parts) for key, parts in columns.items()}
         yield name
-        yield f"  off, mm: 50 % {_mm(all_['off'], 50)}, 95 % {_mm(all_['off'], 95)}" + "".join(
-            f"; {label.word} {_mm(all_[f'off {label.word}'], 50)}, {_mm(all_[f'off {label.word}'], 95)}"
+        yield f"  off, mm: 50 %, 95 %: {_both(all_['off'])}" + "".join(
+            f"; {label.word} {_both(all_[f'off {label.word}'])}"
             for label in Label
             if len(all_.get(f"off {label.word}", ()))
         )
@@ -244,9 +244,14 @@ def _radius_lines(columns: dict[str, Floats]) -> Iterator[str]:
     for name in GROUPS:
         wrong, share, sigmas = (columns[f"{key} {name}"] for key in ("radius", "share", "sigmas"))
         if len(wrong):
-            yield (f"  radius, {name}: off {_mm(wrong, 50)} mm, {np.median(share):.0%}; 95 % "
-                   f"{_mm(wrong, 95)} mm; within one sigma {(sigmas < 1).mean():.0%}, two "
-                   f"{(sigmas < 2).mean():.0%}; known {columns[f'known {name}'].mean():.0%}")  # fmt: skip
+            known = columns[f"known {name}"].mean()
+            yield (f"  radius, {name}: off {_mm(wrong, 50)} mm, {np.median(share):.0%}; "
+                   f"95 % {_mm(wrong, 95)} mm; within one sigma {(sigmas < 1).mean():.0%}, two "
+                   f"{(sigmas < 2).mean():.0%}; known {known:.0%}")  # fmt: skip
+
+
+def _both(values: Floats) -> str:
+    return f"{_mm(values, 50)}, {_mm(values, 95)}"
 
 
 def _mm(values: Floats, percent: float) -> str:

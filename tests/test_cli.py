@@ -1,5 +1,6 @@
 """The command line as a person and a script use it: outputs, messages, exit status."""
 
+import csv
 import json
 import subprocess
 import sys
@@ -21,7 +22,9 @@ from tests.conftest import simulated
 from tests.recordings import Recording
 from tests.recordings import table_of as points_table
 
-OUTPUTS = {"skeleton.json", "skeleton.swc", "skeleton.ply", "params.toml", "report.html"}
+OUTPUTS = {
+    "skeleton.json", "skeleton.swc", "skeleton.ply", "refined.json", "params.toml", "report.html",
+}  # fmt: skip
 FAST = ["--no-report", "--frame", "z-up"]
 
 
@@ -58,6 +61,41 @@ def test_one_tree_gives_all_its_files(scan: Path, quick: Path, tmp_path: Path) -
     assert record.params is not None and record.params["search"]["K"] == 20
     assert np.linalg.norm(skeleton.xyz[0]) < 0.15
     assert "leaders" in done.stdout
+
+
+def test_the_refined_tree_has_the_same_superpoints_and_the_radii(
+    scan: Path, quick: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    assert prunus("skeletonize", scan, "-o", out, "--params", quick, *FAST).exit_code == 0
+    coarse, fine = (read_skeleton(out / f"{name}.json") for name in ("skeleton", "refined"))
+    assert len(fine) > 3 * len(coarse) and offenders(fine) == {}
+    stands = {int(node): row for row, node in enumerate(fine.superpoint) if node >= 0}
+    assert sorted(stands) == sorted(coarse.superpoint.tolist())
+    rows = [stands[int(node)] for node in coarse.superpoint]
+    assert np.array_equal(coarse.radius, fine.radius[rows], equal_nan=True)
+    assert np.isfinite(coarse.radius).mean() > 0.8
+    assert np.median(np.linalg.norm(coarse.xyz - fine.xyz[rows], axis=1)) < 0.05
+
+
+def test_traits_have_a_row_a_branch(
+    scan: Path, quick: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    out = tmp_path / "out"
+    done = prunus("skeletonize", scan, "-o", out, "--params", quick, "--traits", "--json", *FAST)
+    assert done.exit_code == 0, done.output
+    record = json.loads(done.stdout)
+    with (out / "traits.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert len([row for row in rows if row["label"] == "leader"]) == record["leaders"]
+    assert {row["tree"] for row in rows} == {"tree.ply"}
+    with (out / "tree_traits.csv").open() as file:
+        (tree,) = csv.DictReader(file)
+    assert int(tree["leaders"]) == record["leaders"]
+    assert not (out / "traits.parquet").exists()
+    wanted = "traits.parquet was not written: Parquet needs pyarrow: pip install 'prunus[tables]'"
+    assert wanted in record["warnings"]
 
 
 def test_the_method_of_the_paper_goes_by_its_name(scan: Path, tmp_path: Path) -> None:

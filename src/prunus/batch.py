@@ -18,8 +18,12 @@ from prunus.io.export import write_ply, write_swc
 from prunus.io.inputs import clouds_in, is_one, names_of
 from prunus.io.safely import write_bytes
 from prunus.io.skeletons import write_skeleton
+from prunus.io.tables import csv_bytes, parquet_bytes, without_nan
 from prunus.kernels.compiled import is_compiled, mark_compiled
 from prunus.measure import branches
+from prunus.measure.defined import BRANCH_TRAITS, TREE_TRAITS
+from prunus.measure.refine import Refined
+from prunus.measure.traits import branch_traits, tree_traits
 from prunus.model import Label
 from prunus.params import Parameters
 from prunus.pipeline import Result, skeletonize
@@ -43,6 +47,7 @@ class Options:
     scorer: str = "cnn"
     weights: Path | None = None
     report: bool = True
+    traits: bool = False
 
 
 @dataclass(frozen=True)
@@ -124,12 +129,16 @@ def do(task: Task, options: Options) -> Record:
     reading = (time.process_time() - cpu, time.perf_counter() - wall)
     scorer = scorer_of(options)
     result = skeletonize(scan.cloud, options.base, options.params, options.seed, scorer)
+    cpu, wall = time.process_time(), time.perf_counter()
+    _ = result.refined
+    refining = (time.process_time() - cpu, time.perf_counter() - wall)
     mark_compiled()
     cpu, wall = time.process_time(), time.perf_counter()
     write_outputs(task.folder, result, scan, options.report)
+    notes = write_traits(task.folder, result.refined, scan.file.name) if options.traits else []
     writing = (time.process_time() - cpu, time.perf_counter() - wall)
-    seconds = {"read": reading, **result.seconds, "write": writing}
-    return _record(task, result, scan, seconds)
+    seconds = {"read": reading, **result.seconds, "refine": refining, "write": writing}
+    return _record(task, result, scan, seconds, notes)
 
 
 def scorer_of(options: Options) -> EdgeScorer:
@@ -142,28 +151,58 @@ def scorer_of(options: Options) -> EdgeScorer:
 
 
 def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> None:
-    """skeleton.json, .swc and .ply, params.toml and, where wanted, report.html."""
+    """skeleton.json, .swc and .ply, refined.json, params.toml and, where wanted, report.html.
+
+    The skeleton of the graph has the radii of the refined one.
+    """
     if folder.exists() and not folder.is_dir():
         raise PrunusError(f"{folder}: is a file; expected a folder to write to")
     if report:
         page = report_page(result, scan.file.name, [*scan.notes, *result.notes])
         write_bytes(folder / "report.html", page.encode())
-    write_swc(folder / "skeleton.swc", result.skeleton)
-    write_ply(folder / "skeleton.ply", result.skeleton)
+    skeleton = result.skeleton.with_radius(result.refined.radius_at(result.skeleton.superpoint))
+    write_swc(folder / "skeleton.swc", skeleton)
+    write_ply(folder / "skeleton.ply", skeleton)
     write_bytes(folder / "params.toml", result.params.to_toml().encode())
-    write_skeleton(
-        folder / "skeleton.json",
-        result.skeleton,
-        score=result.score,
-        input=scan.record,
-        params=result.params.model_dump(),
-        seed=result.seed,
-        version_of_prunus=__version__,
-    )
+    evidence = {
+        "score": result.score,
+        "input": scan.record,
+        "params": result.params.model_dump(),
+        "seed": result.seed,
+        "version_of_prunus": __version__,
+    }
+    fine = result.refined.skeleton.moved(result.graph.superpoints.cloud.to_input)
+    write_skeleton(folder / "skeleton.json", skeleton, **evidence)
+    write_skeleton(folder / "refined.json", fine, **evidence)
+
+
+def write_traits(folder: Path, tree: Refined, name: str) -> list[str]:
+    """traits.csv, a row a branch, and tree_traits.csv, one row; the same as Parquet.
+
+    Without pyarrow there is no Parquet; the lines returned say so.
+    """
+    tables = {
+        "traits": ([{"tree": name, **row} for row in branch_traits(tree)], BRANCH_TRAITS),
+        "tree_traits": ([{"tree": name, **tree_traits(tree)}], TREE_TRAITS),
+    }
+    notes = []
+    for stem, (rows, defined) in tables.items():
+        records = [without_nan(row) for row in rows]
+        columns = {"tree": str, **{trait: defined[trait].kind for trait in defined}}
+        write_bytes(folder / f"{stem}.csv", csv_bytes(records, list(columns)))
+        try:
+            write_bytes(folder / f"{stem}.parquet", parquet_bytes(records, columns))
+        except PrunusError as error:
+            notes.append(f"{stem}.parquet was not written: {error}")
+    return notes
 
 
 def _record(
-    task: Task, result: Result, scan: Scan, seconds: dict[str, tuple[float, float]]
+    task: Task,
+    result: Result,
+    scan: Scan,
+    seconds: dict[str, tuple[float, float]],
+    notes: list[str],
 ) -> Record:
     skeleton, graph = result.skeleton, result.graph
     columns: list[Record] = []
@@ -185,7 +224,7 @@ def _record(
         "side_branches": len(branches(skeleton, Label.SIDE_BRANCH)),
         "cpu_s": columns[0],
         "wall_s": columns[1],
-        "warnings": [*scan.notes, *result.notes, *result.warnings],
+        "warnings": [*scan.notes, *result.notes, *result.warnings, *notes],
     }
 
 

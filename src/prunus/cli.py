@@ -125,6 +125,9 @@ def skeletonize(
         bool, typer.Option("--no-isolate", help="The cloud is the tree alone: take nothing out.")
     ] = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.html.")] = False,
+    traits: Annotated[
+        bool, typer.Option("--traits", help="Write traits of branches and tree, CSV and Parquet.")
+    ] = False,
     json: Annotated[
         bool, typer.Option("--json", help="One line of JSON a tree on standard output.")
     ] = False,
@@ -132,7 +135,8 @@ def skeletonize(
 ) -> None:
     """Turn clouds (PLY, PCD, XYZ, TXT, CSV, LAS, LAZ, NPY, NPZ, ROS bags) into labelled skeletons.
 
-    Writes skeleton.json, skeleton.swc, skeleton.ply, report.html and params.toml for each tree.
+    Writes skeleton.json, skeleton.swc, skeleton.ply, refined.json, report.html and params.toml for
+    each tree.
 
     In a camera's frame: `prunus skeletonize tree.ply --frame optical --base 1.4 0.9 1.4`
 
@@ -145,7 +149,7 @@ def skeletonize(
     try:
         options = Options(
             base, frame.value, unit and unit.value, _parameters(params, points, no_isolate), seed,
-            scorer.value, weights, not no_report,
+            scorer.value, weights, not no_report, traits,
         )  # fmt: skip
     except PrunusError as error:
         _stop(error)

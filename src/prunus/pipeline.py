@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from prunus.errors import PrunusError
 from prunus.measure import remarks
+from prunus.measure.refine import Refined, refined
 from prunus.model import Floats, PointCloud, ScoredGraph, SeededGraph, Skeleton
 from prunus.params import Parameters
 from prunus.search import SearchResult, search, search_learned, shipped_score, skel_score
@@ -25,6 +26,9 @@ from prunus.stages.seeds import find_seeds, near_to
 from prunus.stages.sidebranches import find_side_branches
 from prunus.stages.stubs import drop_stubs
 from prunus.stages.superpoints import find_superpoints
+
+REFINED_WITH = 150_000
+"""So many points of the tree, drawn at random, are enough to refine its skeleton."""
 
 Seconds = dict[str, tuple[float, float]]
 """CPU and wall seconds of each stage."""
@@ -54,6 +58,19 @@ class Result:
     def skeleton(self) -> Skeleton:
         """The skeleton in the frame of the input."""
         return self.in_house.moved(self.graph.superpoints.cloud.to_input)
+
+    @cached_property
+    def tree_cloud(self) -> PointCloud:
+        """All points of the tree: what was given, or what was isolated of it."""
+        if self.isolated is None:
+            return self.scan
+        return self.scan.take(self.isolated.target)
+
+    @cached_property
+    def refined(self) -> Refined:
+        """The skeleton refitted to these points, in the house frame; made when first asked for."""
+        points = self.tree_cloud.sample(REFINED_WITH, np.random.default_rng(self.seed))
+        return refined(self.in_house, points)
 
 
 def skeletonize(

@@ -223,3 +223,46 @@ class Orchard:
                         known.add(grown)
                         waiting.append(grown)
         return best, best_score
+
+
+def nearest_on_lines(
+    points: Floats, station: Floats, line: Ints, reach: float
+) -> list[tuple[int, float, float]]:
+    """For each point the station before it, the share of the way to the next, the distance."""
+    found = []
+    for point in points:
+        away = np.linalg.norm(station - point, axis=1)
+        best = int(away.argmin())
+        places = [(math.inf, -1, 0.0)]
+        for s in (best - 1, best):
+            if away[best] <= reach and s >= 0 and s + 1 < len(line) and line[s] == line[s + 1]:
+                step = station[s + 1] - station[s]
+                share = min(max(float((point - station[s]) @ step) / float(step @ step), 0.0), 1.0)
+                places.append((float(np.linalg.norm(station[s] + share * step - point)), s, share))
+        distance, before, share = min(places, key=lambda place: place[0])
+        found.append((before, share, distance))
+    return found
+
+
+def feet(
+    lines: list[Floats], parent: Ints, inside: list[Bools], ahead: int, slide: int, held: float
+) -> list[int]:
+    """For each line the station of its parent, counted along it, from which it leaves; or -1."""
+    found = []
+    for line, above, within_it in zip(lines, parent, inside, strict=True):
+        if above < 0:
+            found.append(-1)
+            continue
+        free = [s for s in range(len(line) - 2) if not within_it[s]]
+        out = min([*free, len(line) - 2])
+        toward = line[min(out + ahead, len(line) - 1)] - line[out]
+        toward = toward / np.linalg.norm(toward)
+        own = lines[above]
+        now = int(np.linalg.norm(own - line[0], axis=1).argmin())
+        costs = {}
+        for s in range(max(1, now - slide), min(len(own) - 1, now + slide + 1)):
+            step = own[s] - line[out]
+            beside = step - min(float(step @ toward), 0.0) * toward
+            costs[s] = beside @ beside + held**2 * ((own[s] - own[now]) ** 2).sum()
+        found.append(min(costs, key=lambda s: costs[s]) if costs else len(own) - 1)
+    return found

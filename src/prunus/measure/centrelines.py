@@ -1,12 +1,12 @@
 """The lines of a skeleton, a station every centimetre: one line a branch, which starts on another.
 
 A scan shows the side of the wood that faces the cameras. Lines are fitted to its points, and lie
-before the axes of the branches by `push`, which the radius tells (see `measure.radii`).
+in front of the axes by a share of the radius.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -62,6 +62,12 @@ class Centrelines:
         high = np.minimum(rows + 2, self.last[line])
         return unit(self.xyz[high] - self.xyz[low])
 
+    def part(self, stays: Bools) -> Centrelines:
+        """The lines of these stations (S,) only."""
+        size = np.bincount(self.line[stays], minlength=len(self.parent))
+        start = np.concatenate([[0], size.cumsum()])
+        return replace(self, xyz=self.xyz[stays], start=start)
+
     def lines(self) -> list[Floats]:
         """The stations of each line."""
         return np.split(self.xyz, self.start[1:-1])
@@ -77,7 +83,17 @@ def joined(lines: list[Floats], like: Centrelines) -> Centrelines:
     """These lines in place of those of `like`, stations evenly set."""
     even = [evenly(line) for line in lines]
     start = np.concatenate([[0], np.cumsum([len(line) for line in even])])
-    return Centrelines(np.concatenate(even), start, like.parent, like.goes_on, like.free)
+    return replace(like, xyz=np.concatenate(even), start=start)
+
+
+def carried(values: Floats, old: Centrelines, new: Centrelines) -> Floats:
+    """Values (S,) at the old stations, at the new ones of the same lines."""
+    places = new.way() + APART * new.line
+    return np.interp(places, old.way() + APART * old.line, values)
+
+
+APART = 1000.0
+"""Metres from one line to the next, where all of them are laid end to end."""
 
 
 def evenly(line: Floats) -> Floats:

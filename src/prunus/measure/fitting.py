@@ -1,4 +1,8 @@
-"""Centre lines fitted to the points of a tree, round after round."""
+"""Centre lines fitted to the points of a tree, round after round.
+
+A round draws free ends out, gives each point to the nearest line, passes smooth lines through the
+points, reads the radii off their widths, pushes the lines back to the axes, and cuts ends off.
+"""
 
 from __future__ import annotations
 
@@ -8,21 +12,40 @@ import numpy as np
 
 from prunus.kernels.feet import feet, within_parents
 from prunus.kernels.lines import nearest_on_lines
-from prunus.measure.centrelines import STEP, Centrelines, joined, unit
-from prunus.measure.radii import Tapers, tapers
+from prunus.measure.centrelines import STEP, Centrelines, carried, joined, unit
+from prunus.measure.radii import WIDE, Tapers, tapers
 from prunus.measure.ribbons import Ribbons, View, camera_place
 from prunus.measure.smoothing import Shares, Ties, smoothed
 from prunus.measure.tips import drawn_out, kept
 from prunus.model import Bools, Floats, Ints
 
-REACHES = (0.05, 0.05, 0.04, 0.04, 0.04)
-"""Points so near a line, metres, are its own; a round each."""
-DEEP = 0.73, 0.0004
-"""The axis lies behind the middle of the points by this share of the radius, and so many metres."""
+
+@dataclass(frozen=True)
+class Round:
+    """How near points are to be, and how firmly lines start on their parents, metres.
+
+    `reach` is how far a line takes points from; `core` what is no distance yet, see `CORE`; `tied`
+    the standard deviation of a line's start from its parent's axis; `every` how many points make
+    one that is looked at.
+    """
+
+    reach: float
+    core: float
+    tied: float
+    every: int
+
+
+ROUNDS = (
+    Round(0.05, 0.030, 0.020, 3),
+    Round(0.05, 0.020, 0.020, 3),
+    Round(0.04, 0.012, 0.020, 2),
+    Round(0.04, 0.008, 0.010, 2),
+    Round(0.04, 0.006, 0.001, 1),
+)
 CORE = 2.0
-"""Points over so many half widths beside a line hardly count ..."""
-CORE_LEAST = (0.030, 0.020, 0.012, 0.008, 0.006)
-"""... and none under so many metres is that far, a round each."""
+"""Points over so many half widths beside a line hardly count."""
+DEEP = (0.73, 0.0004)
+"""The axis lies behind the middle of the points by this share of the radius, and so many metres."""
 OUTSIDE = 1.4
 """A line takes points from where it is so many half widths of its parent beside it."""
 AHEAD = 6
@@ -31,19 +54,18 @@ SLIDE = 8
 """Its foot moves by so many stations in a round, at most."""
 HELD = 0.15
 """It moves where that brings the lines nearer by this share of its way."""
-TIED = (0.02, 0.02, 0.02, 0.01, 0.001)
-"""Lines start on their parents: standard deviation in metres, a round each."""
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Lines, and what was seen at their stations: points (S,), their view, and the radii."""
+    """Lines, and at their stations the points (S,), weighted, and the radii.
+
+    `foot` (B,) is the station of its parent at which each line starts; 0 where it has no parent.
+    """
 
     lines: Centrelines
     count: Floats
-    half: Floats
     tapers: Tapers
-    inside: Bools
     foot: Ints
 
 
@@ -53,81 +75,72 @@ def fitted(lines: Centrelines, label: Ints, least: Ints, xyz: Floats) -> Fit:
     At least so many stations (B,) stay of each.
     """
     cameras = camera_place(lines, xyz)
-    blank = np.full(len(lines.xyz), np.nan)
-    fit = Fit(
-        lines,
-        blank,
-        blank,
-        tapers(lines, label, blank),
-        np.zeros(len(blank), bool),
-        np.zeros(0, np.int64),
-    )
-    for number in range(len(REACHES)):
-        fit = _round(fit, label, least, xyz, cameras, number)
+    unseen = np.full(len(lines.xyz), np.nan)
+    fit = Fit(lines, unseen, tapers(lines, label, unseen), np.zeros(len(label), np.int64))
+    for turn in ROUNDS:
+        fit = _round(_evened(fit), label, least, xyz[:: turn.every], cameras, turn)
     return fit
 
 
-def _round(
-    fit: Fit, label: Ints, least: Ints, xyz: Floats, cameras: Floats, number: int
-) -> Fit:
+def _evened(fit: Fit) -> Fit:
+    """The lines with even stations; the radii go with them."""
+    even = joined(fit.lines.lines(), fit.lines)
+    radius = carried(fit.tapers.radius, fit.lines, even)
+    blank = np.zeros(len(radius))
+    return Fit(even, blank, replace(fit.tapers, radius=radius), fit.foot)
+
+
+def _round(fit: Fit, label: Ints, least: Ints, xyz: Floats, cameras: Floats, turn: Round) -> Fit:
     lines, was = drawn_out(fit.lines)
     view = View.of(lines, cameras)
-    radius = fit.tapers.radius[was]
-    noise = fit.tapers.noise
-    depth = (DEEP[0] * radius + DEEP[1])[:, None] * view.back
+    radius, noise = fit.tapers.radius[was], fit.tapers.noise
+    half = np.hypot(radius / WIDE, noise)
+    depth = _depth(radius, view)
     front = replace(lines, xyz=lines.xyz - depth)
-    half = np.hypot(radius / 0.93, noise)
     inside = within_parents(front.xyz, lines.start, lines.parent, OUTSIDE * half)
-    points = _shares(front, inside, half, xyz, number)
+    points = _shares(front, inside, half, xyz, turn)
     foot = _feet(lines, inside)
-    ties = _ties(lines, foot, depth, TIED[number])
+    ties = _ties(lines, foot, depth, turn.tied)
     middle = replace(front, xyz=smoothed(front, points, ties, noise))
     ribbons = Ribbons.of(middle, view, points)
-    measured = np.where(inside, np.nan, ribbons.half)
-    found = tapers(lines, label, measured)
-    axes = middle.xyz + (DEEP[0] * found.radius + DEEP[1])[:, None] * view.back
-    stays = kept(lines, was, ribbons.count, least)
-    size = np.bincount(lines.line[stays], minlength=len(label))
-    start = np.concatenate([[0], size.cumsum()])
-    cut = replace(lines, xyz=axes[stays], start=start)
-    t = Tapers(found.radius[stays], found.error[stays], found.unknown[stays], found.noise)
-    out = Fit(
-        cut, ribbons.count[stays], measured[stays], t, inside[stays], (np.cumsum(stays) - 1)[foot]
-    )
-    return out if number == len(REACHES) - 1 else _even(out, least)
+    found = tapers(lines, label, np.where(inside, np.nan, ribbons.half))
+    axes = replace(lines, xyz=middle.xyz + _depth(found.radius, view))
+    stays = kept(lines, was, turn.every * ribbons.count, _least(lines, foot, least))
+    row = np.cumsum(stays) - 1
+    return Fit(axes.part(stays), ribbons.count[stays], found.part(stays), row[foot])
 
 
-def _even(fit: Fit, least: Ints) -> Fit:
-    new = joined(fit.lines.lines(), fit.lines)
-    a = fit.lines.way() + 100.0 * fit.lines.line
-    b = new.way() + 100.0 * new.line
-    r = np.interp(b, a, fit.tapers.radius)
-    blank = np.full(len(b), np.nan)
-    return Fit(
-        new,
-        blank,
-        blank,
-        Tapers(r, blank, np.zeros(len(b), np.int64), fit.tapers.noise),
-        np.zeros(len(b), bool),
-        np.zeros(0, np.int64),
-    )
+def _depth(radius: Floats, view: View) -> Floats:
+    """From the middle of the points to the axis (S, 3)."""
+    return np.asarray((DEEP[0] * radius + DEEP[1])[:, None] * view.back)
 
 
-def _shares(front: Centrelines, inside: Bools, half: Floats, xyz: Floats, number: int) -> Shares:
+def _shares(front: Centrelines, inside: Bools, half: Floats, xyz: Floats, turn: Round) -> Shares:
+    """The points (P, 3) that lines take from outside their parents, and how much each counts."""
     rows = np.flatnonzero(~inside)
-    before, share, away = nearest_on_lines(xyz, front.xyz[rows], front.line[rows], REACHES[number])
+    before, share, away = nearest_on_lines(xyz, front.xyz[rows], front.line[rows], turn.reach)
     near = np.flatnonzero(before >= 0)
-    before, share, away = rows[before[near]], share[near], away[near]
-    core = np.maximum(CORE * half[before], CORE_LEAST[number])
-    weight = 1 / (1 + (away / core) ** 2) ** 2
-    weight[away > CORE * core] = 0
-    points = xyz[near]
-    end = front.last[front.line[before]]
-    ahead = unit(front.xyz[end] - front.xyz[end - 1])
+    before, away = rows[before[near]], away[near]
+    core = np.maximum(CORE * half[before], turn.core)
+    counts = (away <= CUT * core) & ~_beyond(front, before, xyz[near])
+    fall = np.maximum(away / core - FLAT, 0.0) / (1 - FLAT)
+    near, before, fall = near[counts], before[counts], fall[counts]
+    return Shares(xyz[near], before, share[near], 1 / (1 + fall**2) ** 2)
+
+
+FLAT = 0.5
+"""Up to this share of the core all points count alike, so that edges of ribbons are not lost ..."""
+CUT = 2.5
+"""... and so many cores away they do not count at all."""
+
+
+def _beyond(front: Centrelines, before: Ints, points: Floats) -> Bools:
+    """Which points (Q, 3), nearest to stations (Q,), lie beyond the free end of their line."""
+    line = front.line[before]
+    end = front.last[line]
+    ahead = unit(front.xyz[front.last] - front.xyz[front.last - 1])[line]
     over = ((points - front.xyz[end]) * ahead).sum(axis=1)
-    weight[(over > 0.5 * STEP) & front.free[front.line[before]]] = 0
-    some = weight > 0
-    return Shares(points[some], before[some], share[some], weight[some])
+    return np.asarray((over > STEP / 2) & front.free[line])
 
 
 def _feet(lines: Centrelines, inside: Bools) -> Ints:
@@ -135,6 +148,15 @@ def _feet(lines: Centrelines, inside: Bools) -> Ints:
     ends = lines.last[np.maximum(lines.parent, 0)]
     foot = feet(lines.xyz, lines.start, lines.parent, inside, AHEAD, SLIDE, HELD)
     return np.asarray(np.where(lines.goes_on, ends, np.maximum(foot, 0)))
+
+
+def _least(lines: Centrelines, foot: Ints, least: Ints) -> Ints:
+    """How many stations (B,) of each line stay at least: it goes on beyond all that it carries."""
+    held = least.copy()
+    hung = np.flatnonzero((lines.parent >= 0) & ~lines.goes_on)
+    carrier = lines.parent[hung]
+    np.maximum.at(held, carrier, foot[hung] - lines.first[carrier] + 2)
+    return held
 
 
 def _ties(lines: Centrelines, foot: Ints, depth: Floats, err: float) -> Ties:

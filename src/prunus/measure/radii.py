@@ -27,7 +27,7 @@ USUAL = {
 
 Those of the simulated orchard (`docs/simulation.md`), and half as much doubt again.
 """
-WIDE = 0.93
+WIDE = 0.895
 """The radius is this share of half the width of a ribbon without noise."""
 SHOWS = {
     Label.TRUNK: (0.3, 0.9),
@@ -81,6 +81,10 @@ class Tapers:
     unknown: Ints
     noise: float
 
+    def part(self, stays: Bools) -> Tapers:
+        """Those of these stations (S,) only."""
+        return Tapers(self.radius[stays], self.error[stays], self.unknown[stays], self.noise)
+
 
 def tapers(lines: Centrelines, label: Ints, half: Floats) -> Tapers:
     """Radii along lines of some labels (B,), from half the widths (S,), NaN where there is none."""
@@ -122,18 +126,22 @@ class _Fit:
     usual: Floats
 
     def modelled(self, ends: Floats) -> tuple[Floats, Floats]:
-        """Half the widths (W,) for radii at feet and tips (B, 2), and what a metre of radius adds."""
+        """Half the widths (W,) for radii at feet and tips (B, 2), and their slopes (W,)."""
         mix = np.column_stack([1 - self.share, self.share])
         radius = np.maximum((mix * ends[self.line]).sum(axis=1), LEAST)
         half = np.sqrt((radius / WIDE) ** 2 + self.noise**2)
         return half, radius / WIDE**2 / half
 
     def solved(self, lines: int) -> tuple[Floats, Floats]:
-        """Radii (B, 2) at feet and tips, none thicker at the tip, and their covariance (B, 2, 2)."""
+        """Radii (B, 2) at feet and tips, the tip no thicker, and their covariance (B, 2, 2)."""
         before = np.column_stack([self.usual[:, 0], self.usual[:, 2], np.zeros(lines)])
-        shared = _norm(ERR_OF_ALL, self.usual[:, (0, 2)].mean(axis=1), float(self.noise.mean()) if len(self.noise) else 0.0)
+        shared = _norm(
+            ERR_OF_ALL,
+            self.usual[:, (0, 2)].mean(axis=1),
+            float(self.noise.mean()) if len(self.noise) else 0.0,
+        )
         trust = np.column_stack([self.usual[:, 1], self.usual[:, 3], shared]) ** -2.0
-        found, doubt = before, np.zeros((lines, 3, 3))
+        found, doubt = before, np.asarray(np.zeros((lines, 3, 3)), np.float64)
         for _ in range(ROUNDS):
             half, slope = self.modelled(found[:, :2])
             rest = self.half - half - found[self.line, 2]
@@ -144,7 +152,7 @@ class _Fit:
             )
             pull = (weight * rest)[:, None] * design
             right = trust * (before - found) + self._summed(pull, lines)
-            doubt = np.linalg.inv(normal)
+            doubt = np.asarray(np.linalg.inv(normal), np.float64)
             found = _tapering(found + (doubt @ right[:, :, None])[:, :, 0], doubt)
         return found[:, :2], doubt[:, :2, :2]
 

@@ -37,17 +37,24 @@ class Refined:
         """Why each radius (M,) is NaN, in words; nothing where it is known."""
         return [Unknown(value).words for value in self.unknown]
 
+    def radius_at(self, superpoints: Ints) -> Floats:
+        """The radii (N,) at the nodes that stand for superpoints (N,); NaN where none does."""
+        of = dict(
+            zip(self.skeleton.superpoint.tolist(), self.skeleton.radius.tolist(), strict=True)
+        )
+        return np.array([of.get(node, np.nan) if node >= 0 else np.nan for node in superpoints])
+
 
 def refined(skeleton: Skeleton, cloud: PointCloud) -> Refined:
     """Refine a skeleton with the points of its tree, both in the house frame.
 
     The cameras are taken to stand at smaller Y. A stretch without points stays where it is.
     """
-    lines, found = lines_of(skeleton)
-    if not found:
+    if len(skeleton) == 1:
         nothing = np.full(len(skeleton), int(Unknown.FEW_POINTS))
         unknown = np.full(len(skeleton), np.nan)
         return Refined(skeleton.with_radius(unknown), unknown, nothing, nothing < 0)
+    lines, found = lines_of(skeleton)
     label = np.array([int(branch.label) for branch in found])
     least = np.array([len(branch.rows) for branch in found])
     fit = fitted(lines, label, least, cloud.xyz)

@@ -19,7 +19,8 @@ CAMERA = 1.5
 HIGH = 1.45
 """... and so high over its base."""
 FAN = 0.5
-"""Along the row several stand side by side: of the way from their middle, this share is seen askew."""
+"""Several stand side by side along the row: places are seen askew by this share of their way from
+the middle."""
 AROUND = 4
 """The width is that of the points up to so many stations away."""
 FEWEST = 5.0

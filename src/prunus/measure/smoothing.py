@@ -37,7 +37,7 @@ class Shares:
 
     def summed(self, values: Floats, stations: int) -> Floats:
         """Weighted sums (S,) of values (Q,) at the stations."""
-        return np.bincount(self.station, self.weight * values, stations)
+        return np.asarray(np.bincount(self.station, self.weight * values, stations), np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,14 +79,16 @@ FEW = 3.0
 def _of_points(points: Shares, say: Floats, size: int) -> tuple[Floats, Floats]:
     first, second = 1 - points.share, points.share
     diagonal = np.bincount(points.before, say * first**2, size)
-    diagonal += np.bincount(points.before + 1, say * second**2, size)
-    return diagonal, np.bincount(points.before, say * first * second, size)
+    diagonal = diagonal + np.bincount(points.before + 1, say * second**2, size)
+    beside = np.bincount(points.before, say * first * second, size)
+    return np.asarray(diagonal, np.float64), np.asarray(beside, np.float64)
 
 
 def _spread(points: Shares, values: Floats, size: int) -> Floats:
     """Values (Q,) shared out to the two stations of each point."""
     low = np.bincount(points.before, values * (1 - points.share), size)
-    return np.asarray(low + np.bincount(points.before + 1, values * points.share, size))
+    high = np.bincount(points.before + 1, values * points.share, size)
+    return np.asarray(low + high, np.float64)
 
 
 def _add_bending(lines: Centrelines, diagonal: Floats, beside: Floats) -> Floats:

@@ -51,7 +51,7 @@ def kept(lines: Centrelines, was: Ints, count: Floats, least: Ints) -> Bools:
 
 
 def _end(count: Floats, old: int) -> int:
-    """The last station of a line, given points (R,) at its stations, of which `old` was the last."""
+    """The last station of a line, given points (R,) at its stations; `old` was the last."""
     enough = max(AT_LEAST, USUAL * float(np.median(count[: old + 1])))
     held = np.flatnonzero(count >= enough)
     if len(held) == 0:
