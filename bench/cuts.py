@@ -20,7 +20,6 @@ from prunus.kernels.away import away_from
 from prunus.measure import shown
 from prunus.measure.cuts import Cut, CutRules, Plan, plan_cuts, shipped_rules
 from prunus.measure.cuts.limbs import Limb, Limbs
-from prunus.measure.refine import refined
 from prunus.model import Floats, Label, Skeleton
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
@@ -64,15 +63,11 @@ def outcome(seed: int, setting: Setting, rules: CutRules) -> Outcome:
     tree = tree_of(seed, setting)
     params = Parameters().changed("isolation", isolate="never")
     result = skeletonize(tree.cloud, tree.truth.xyz[0], params)
-    back = tree.cloud.to_input
-    start = time.process_time()
-    fine = refined(result.in_house, tree.cloud)
-    refining = time.process_time()
-    scan = back.inverse().apply(simulate_scan(seed, setting).xyz)
+    fine = result.refined
+    scan = tree.cloud.to_input.inverse().apply(simulate_scan(seed, setting).xyz)
     before = time.process_time()
     plan = plan_cuts(fine, scan, rules)
     spent = time.process_time() - before
-    del start, refining
     return judged(tree, plan, rules, spent)
 
 

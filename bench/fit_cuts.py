@@ -1,6 +1,6 @@
 """`python -m bench.fit_cuts [--trees 120] [--seed 500000] [--write]`: the confidence of cuts.
 
-A logistic regression over the traits of the side branches that the rules cut on what the chain
+A logistic regression over the evidence of the side branches that the rules cut on what the chain
 makes of simulated field scans: right is a cut on a branch of which the rules ask for one on the
 true tree, or that comes down with another, at most 3 cm off. Prints, with each tree judged by a
 model that has not seen it, how many cuts a limit lets through and how many of them are wrong.
@@ -73,7 +73,7 @@ def main() -> None:
         for one in outcome(seed, "field", shipped_rules()).planned:
             if one.cut.rule != "side_branches":
                 continue
-            rows.append(features(one.cut.traits))
+            rows.append(features(one.cut.evidence))
             right.append(is_right(one))
             tree.append(seed)
             clear.append(not [r for r in one.cut.reasons if not r.startswith("confidence")])

@@ -20,7 +20,7 @@ from prunus.measure.cuts import Cut, CutRules, Plan, plan_cuts
 from prunus.measure.cuts.reach import samples
 from prunus.measure.refine import refined
 from prunus.model import FRAMES, Floats, Label, PointCloud, RigidMotion, Skeleton
-from prunus.pipeline import skeletonize
+from prunus.pipeline import REFINED_WITH, skeletonize
 
 SKELETONS = (".json", ".swc")
 OWN = 0.06
@@ -49,10 +49,7 @@ def cut_file(source: Source, rules: CutRules) -> PlanFile:
         return _on_skeleton(source, rules)
     scan = open_scan(source.path, source.frame, source.unit)
     result = skeletonize(scan.cloud, source.base)
-    own = scan.cloud
-    if result.isolated is not None:
-        own = own.take(result.isolated.target)
-    plan = plan_cuts(refined(result.in_house, own), scan.cloud.xyz, rules)
+    plan = plan_cuts(result.refined, scan.cloud.xyz, rules)
     notes = [*scan.notes, *result.notes, *result.warnings]
     return plan_file(plan, scan.cloud.to_input, input=scan.record, notes=notes)
 
@@ -91,7 +88,8 @@ def _own(cloud: PointCloud, skeleton: Skeleton) -> PointCloud:
     """The points of a cloud that are near a skeleton, both in the house frame."""
     line = samples(skeleton.xyz, skeleton.parent, np.arange(1, len(skeleton)))
     _, members = within(cloud.xyz, line, OWN)
-    return cloud.take(np.unique(members)) if len(members) else cloud
+    own = cloud.take(np.unique(members)) if len(members) else cloud
+    return own.sample(REFINED_WITH, np.random.default_rng(0))
 
 
 def _upright(skeleton: Skeleton, frame: str) -> Floats:

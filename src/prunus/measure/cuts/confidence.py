@@ -1,6 +1,6 @@
 """How sure it is that a cut is right.
 
-For a side branch a logistic model over its traits, fitted to simulated trees by `python -m
+For a side branch a logistic model over its evidence, fitted to simulated trees by `python -m
 bench.fit_cuts`: the probability that the rules ask for that cut on the true tree. For a leader the
 confidence of its least sure edge.
 """
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from prunus.measure.cuts.traits import Traits
+from prunus.measure.cuts.evidence import Evidence
 from prunus.model import Label
 
 SHIPPED = Path(__file__).parents[2] / "weights" / "cuts.toml"
@@ -24,16 +24,16 @@ FAR = 0.10
 """A tip farther from other branches is no better, metres."""
 
 
-def features(traits: Traits) -> dict[str, float]:
+def features(evidence: Evidence) -> dict[str, float]:
     """What the model sees of a branch; NaN where it is unknown."""
     return {
-        "least": math.log(max(traits.least, LEAST)),
-        "touch": min(traits.touch, FAR),
-        "bend": math.log(max(traits.bend, 2.0)),
-        "slant": math.log(max(traits.slant, 0.5)),
-        "spread": traits.spread,
-        "aside": math.log(max(traits.aside, 0.002)),
-        "behind": traits.behind,
+        "least": math.log(max(evidence.least, LEAST)),
+        "touch": min(evidence.touch, FAR),
+        "bend": math.log(max(evidence.bend, 2.0)),
+        "slant": math.log(max(evidence.slant, 0.5)),
+        "spread": evidence.spread,
+        "aside": math.log(max(evidence.aside, 0.002)),
+        "behind": evidence.behind,
     }
 
 
@@ -60,9 +60,9 @@ class Model:
             lines += [f"{key} = {value:.4f}" for key, value in getattr(self, name).items()]
         return "\n".join(lines) + "\n"
 
-    def __call__(self, traits: Traits) -> float:
-        """The probability that the cut of a side branch is right; unknown traits are as usual."""
-        found = {key: value for key, value in features(traits).items() if math.isfinite(value)}
+    def __call__(self, evidence: Evidence) -> float:
+        """The probability that the cut of a side branch is right; unknown evidence are as usual."""
+        found = {key: value for key, value in features(evidence).items() if math.isfinite(value)}
         odds = sum(self.weight[key] * (value - self.usual[key]) for key, value in found.items())
         return 1 / (1 + math.exp(-self.offset - odds))
 
@@ -73,8 +73,8 @@ def shipped_model() -> Model:
     return Model.from_toml(SHIPPED)
 
 
-def confidence_of(label: Label, traits: Traits) -> float:
+def confidence_of(label: Label, evidence: Evidence) -> float:
     """The confidence in a cut of a branch of that label; 0 where nothing is known of its edges."""
-    if not math.isfinite(traits.least):
+    if not math.isfinite(evidence.least):
         return 0.0
-    return shipped_model()(traits) if label == Label.SIDE_BRANCH else traits.least
+    return shipped_model()(evidence) if label == Label.SIDE_BRANCH else evidence.least

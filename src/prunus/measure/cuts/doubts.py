@@ -7,11 +7,11 @@ import math
 import numpy as np
 
 from prunus.kernels.neighbours import nearest
+from prunus.measure.cuts.evidence import Evidence
 from prunus.measure.cuts.limbs import Limbs
 from prunus.measure.cuts.reach import SMEAR, Approach, samples
 from prunus.measure.cuts.rules import Demand
 from prunus.measure.cuts.settings import CutRules
-from prunus.measure.cuts.traits import Traits
 from prunus.model import Bools, Floats, Label
 
 TOUCH = 0.03
@@ -20,26 +20,32 @@ UNSURE = 0.50
 """A diameter whose standard deviation is a larger share of it is doubtful."""
 
 
-def doubts_of(demand: Demand, traits: Traits, confidence: float, rules: CutRules) -> list[str]:
+def doubts_of(demand: Demand, evidence: Evidence, confidence: float, rules: CutRules) -> list[str]:
     """What is doubtful about a cut: the rule's own doubts, its branch, and the way to it."""
     review, found = rules.review, list(demand.doubts)
     if demand.limb.label == Label.LEADER and getattr(rules, demand.rule).always_review:
         found.append("it goes through a leader")
     if confidence < review.confidence:
         found.append(f"confidence {confidence:.2f}, under {review.confidence:g}")
-    if traits.path < review.path:
-        found.append(f"the way to it from the base has an edge of confidence {traits.path:.2f}")
-    if not math.isfinite(traits.diameter):
+    if evidence.least < review.edge:
+        found.append(f"one of its edges has confidence {evidence.least:.2f}")
+    if evidence.path < review.path:
+        found.append(f"the way to it from the base has an edge of confidence {evidence.path:.2f}")
+    if not math.isfinite(evidence.diameter):
         found.append("its diameter is not known")
-    elif traits.doubt > UNSURE * traits.diameter:
-        found.append(f"its diameter is known to {1e3 * traits.doubt:.0f} mm only")
-    if traits.seen < review.seen:
-        found.append(f"only {traits.seen:.0%} of it has points")
+    elif evidence.doubt > UNSURE * evidence.diameter:
+        found.append(f"its diameter is known to {1e3 * evidence.doubt:.0f} mm only")
+    if evidence.seen < review.seen:
+        found.append(f"only {evidence.seen:.0%} of it has points")
     if demand.limb.label == Label.SIDE_BRANCH:
-        if traits.thick > review.thick:
-            found.append(f"{traits.thick:.0%} as thick as its leader: it may be one")
-        if traits.touch < TOUCH:
-            found.append(f"its tip touches {traits.touched}: it may belong to it")
+        if evidence.thick > review.thick:
+            found.append(f"{evidence.thick:.0%} as thick as its leader: it may be one")
+        if evidence.upright < review.level:
+            found.append("its leader lies level there: it may be a support")
+        if evidence.behind > review.behind:
+            found.append("wood goes straight on behind its leader: it may be another's")
+        if evidence.touch < TOUCH:
+            found.append(f"its tip touches {evidence.touched}: it may belong to it")
     return found
 
 

@@ -19,7 +19,7 @@ LIKELY_RADIUS = {
 }
 """Where a radius is unknown, metres; a cut that rests on one is reviewed."""
 STEP = 0.002
-"""Where a branch comes out of its parent's bark is found to so many metres ..."""
+"""Where a branch comes out of its parent's bark is looked for in steps of so many metres ..."""
 NEAR = 0.30
 """... within so many metres of its start."""
 
@@ -143,8 +143,11 @@ def _out_of_bark(xyz: Floats, along: Floats, above: Limb, radius: float) -> floa
         radius = LIKELY_RADIUS[above.label]
     steps = np.arange(0.0, min(along[-1], NEAR), STEP)
     points = np.column_stack([np.interp(steps, along, xyz[:, axis]) for axis in range(3)])
-    clear = away_from(points, stretch_near(above.xyz, xyz[0])) >= radius
-    return float(steps[clear.argmax()]) if clear.any() else float(along[-1])
+    away = away_from(points, stretch_near(above.xyz, xyz[0]))
+    first = int((away >= radius).argmax())
+    if first == 0:
+        return float(along[-1])
+    return float(np.interp(radius, away[first - 1 : first + 1], steps[first - 1 : first + 1]))
 
 
 def stretch_near(line: Floats, place: Floats) -> Floats:

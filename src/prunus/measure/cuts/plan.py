@@ -12,11 +12,11 @@ import numpy as np
 
 from prunus.measure.cuts.confidence import confidence_of
 from prunus.measure.cuts.doubts import doubts_around, doubts_of
+from prunus.measure.cuts.evidence import Evidence, evidence_of
 from prunus.measure.cuts.limbs import Limbs
 from prunus.measure.cuts.reach import Approach, approach, around, blade_normal, samples
 from prunus.measure.cuts.rules import Demand, Left, verdicts
 from prunus.measure.cuts.settings import CutRules, shipped_rules
-from prunus.measure.cuts.traits import Traits, traits_of
 from prunus.measure.refine import Refined
 from prunus.model import Bools, Floats, Skeleton
 
@@ -48,7 +48,7 @@ class Cut:
     removed_volume: float
     confidence: float
     reasons: tuple[str, ...]
-    traits: Traits
+    evidence: Evidence
 
     @property
     def needs_review(self) -> bool:
@@ -96,9 +96,9 @@ def _cut(
     limb, along = demand.limb, demand.along
     point, heading = limb.at(along), limb.heading(along)
     gone = limbs.beyond(limb, along)
-    traits = traits_of(limbs, tree, demand, points)
-    confidence = confidence_of(limb.label, traits)
-    reasons = doubts_of(demand, traits, confidence, rules)
+    evidence = evidence_of(limbs, tree, demand, points)
+    confidence = confidence_of(limb.label, evidence)
+    reasons = doubts_of(demand, evidence, confidence, rules)
     way, normal = None, heading
     if points is None:
         reasons.append("no cloud: what stands in the way is not known")
@@ -110,8 +110,8 @@ def _cut(
     length, volume = _removed(tree.skeleton, gone, demand)
     return Cut(
         f"{demand.rule}:{limb.name.replace(' ', '-')}", limb.name, demand.rule, demand.because,
-        _point(point), _point(normal), _point(heading), way, traits.diameter, traits.doubt,
-        demand.stub, along, length, volume, confidence, tuple(reasons), traits,
+        _point(point), _point(normal), _point(heading), way, evidence.diameter, evidence.doubt,
+        demand.stub, along, length, volume, confidence, tuple(reasons), evidence,
     )  # fmt: skip
 
 

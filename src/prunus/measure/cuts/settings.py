@@ -62,6 +62,9 @@ class Review(_Group):
 
     confidence: float = Field(ge=0, le=1)
     path: float = Field(ge=0, le=1)
+    edge: float = Field(ge=0, le=1)
+    behind: float = Field(ge=0, le=1)
+    level: float = Field(ge=0, le=90)
     near_limit: float = Field(ge=0, le=1)
     other_wood: float = Field(ge=0, le=1)
     thick: float = Field(gt=0, le=10)

@@ -38,14 +38,15 @@ TINY = 1e-9
 
 
 @dataclass(frozen=True)
-class Traits:
+class Evidence:
     """What is known of a branch to be cut; NaN where nothing is.
 
     From its edges: `least`, the least confidence of its own, `path`, of those from the base to it,
     and `seen`, the share of its length with points. From its shape: `length` and `diameter` at the
     cut with its standard deviation `doubt`, metres; `thick`, that over its parent's; `bend` at its
     foot, degrees; `slant`, how far it runs in its parent's bark over the parent's radius; `touch`,
-    metres from its tip to the nearest branch that is not its own, `touched`.
+    metres from its tip to the nearest branch that is not its own, `touched`; `upright`, how steeply
+    its parent rises where it leaves, degrees.
 
     From the points: `spread`, their mean distance from its axis at the cut, metres; `aside`, how
     far from the cut the line through them passes; `behind`, how much of the straight way back
@@ -63,13 +64,14 @@ class Traits:
     slant: float
     touch: float
     touched: str
+    upright: float
     spread: float = math.nan
     aside: float = math.nan
     behind: float = math.nan
 
 
-def traits_of(limbs: Limbs, tree: Refined, demand: Demand, points: Floats | None) -> Traits:
-    """The traits of the branch that a demand cuts; `points` (Q, 3) of the scan around the cut."""
+def evidence_of(limbs: Limbs, tree: Refined, demand: Demand, points: Floats | None) -> Evidence:
+    """The evidence of the branch that a demand cuts; `points` (Q, 3) of the scan around the cut."""
     limb, skeleton = demand.limb, tree.skeleton
     rows = limb.rows[1:]
     parent = limbs.parent_of(limb)
@@ -80,7 +82,7 @@ def traits_of(limbs: Limbs, tree: Refined, demand: Demand, points: Floats | None
         {} if points is None or parent is None
         else _from_points(limb, parent, radius, demand.along, points)
     )  # fmt: skip
-    return Traits(
+    return Evidence(
         least=_least(skeleton.confidence[rows]),
         path=_least(skeleton.confidence[limbs.path_to(limb)]),
         seen=float(np.average(tree.seen[rows], weights=skeleton.lengths[rows] + TINY)),
@@ -92,6 +94,7 @@ def traits_of(limbs: Limbs, tree: Refined, demand: Demand, points: Floats | None
         slant=limb.bark / radius,
         touch=touch,
         touched=touched,
+        upright=math.nan if parent is None else _rise(parent, limb.xyz[0]),
         **by_points,
     )
 
@@ -106,6 +109,14 @@ def _bend(limb: Limb) -> float:
     """The turn, degrees, between the first of a branch outside the bark and what comes then."""
     foot, knee, on = (limb.at(limb.bark + way) for way in (0.0, OUTSET, ONWARD))
     return math.degrees(math.acos(np.clip(_unit(knee - foot) @ _unit(on - knee), -1, 1)))
+
+
+def _rise(parent: Limb, foot: Floats) -> float:
+    """How steeply a limb rises about a place on it, degrees."""
+    stretch = parent.xyz[np.linalg.norm(parent.xyz - foot, axis=1) <= ONWARD]
+    if len(stretch) < 2:
+        stretch = parent.xyz
+    return math.degrees(math.asin(abs(_unit(stretch[-1] - stretch[0])[2])))
 
 
 def _nearest_other(limbs: Limbs, limb: Limb) -> tuple[float, str]:
