@@ -53,7 +53,7 @@ def measured(seed: int) -> Record:
         "row": abs(math.degrees(math.atan2(turn[0, 1], turn[0, 0]))),
         "cpu": cpu,
         "ratio, raw": ratio(skeletonize(scan.xyz), tree),
-        "ratio, true points and base": ratio(skeletonize(tree.xyz, base), tree),
+        "ratio, true points and base": ratio(skeletonize(tree.cloud, base), tree),
     }
     for kind in Kind:
         held = scan.kind == kind

@@ -61,7 +61,8 @@ def case_of(seed: int, setting: Setting) -> Case:
     """The scan of that seed."""
     tree = tree_of(seed, setting)
     place = _as_shown(simulate_scan(seed, setting), setting)
-    return Case(tree.xyz, tree.truth, tree.counts, place)
+    points = tree.cloud.to_input.apply(tree.cloud.xyz)
+    return Case(points, tree.truth, tree.counts, place)
 
 
 def _as_shown(scan: Scan, setting: Setting) -> Skeleton:

@@ -59,8 +59,9 @@ def main() -> None:
     total = np.zeros((2, 4))
     for seed in range(chosen.seed, chosen.seed + chosen.trees):
         tree = tree_of(seed)
-        points, middles = wires_through(tree.xyz, np.random.default_rng(seed))
-        for row, cloud in enumerate((tree.xyz, np.concatenate([tree.xyz, points]))):
+        xyz = tree.cloud.to_input.apply(tree.cloud.xyz)
+        points, middles = wires_through(xyz, np.random.default_rng(seed))
+        for row, cloud in enumerate((xyz, np.concatenate([xyz, points]))):
             skeleton = skeletonize(cloud, tree.truth.xyz[0], params).skeleton
             found = branch_measures(skeleton, shown(tree.truth, tree.counts))
             total[row] += [

@@ -42,7 +42,7 @@ def rng() -> np.random.Generator:
     return np.random.default_rng(0)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def real_scan() -> Path:
     if not REAL.exists():
         pytest.skip("the real scan lies in ../shared, which is absent here")

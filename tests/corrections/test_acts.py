@@ -50,7 +50,7 @@ STEPS = some.one_of(
     some.builds(AddPath, several(PLACES, 2), LABELS, some.booleans()),
     some.builds(RemoveEdge, NODES),
     some.builds(RemoveBranch, NODES),
-    some.builds(Relabel, NODES, LABELS, some.sampled_from(["edge", "branch", "onward"])),
+    some.builds(Relabel, NODES, LABELS, some.sampled_from(["edge", "branch", "onward", "until"])),
     some.builds(Reattach, NODES, NODES),
     some.builds(MoveBase, PLACES),
 )

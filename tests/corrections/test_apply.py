@@ -183,7 +183,7 @@ def test_a_third_support_is_refused() -> None:
     assert said.rule == "trunk_support_split"
     offered = [words for words, _ in said.repairs]
     assert offered[0] == "becomes a leader of the trunk"
-    assert "as asked, without support 1" in offered
+    assert "as asked, without support 1 and leader 1" in offered
 
 
 def test_where_a_support_leaves_the_trunk_ends() -> None:
@@ -259,6 +259,21 @@ def test_a_relabelling_reaches_as_far_as_it_says(reach: str, edges: int) -> None
     else:
         assert isinstance(came, Refused), "a side branch leaves a leader, and stays one"
         assert "leader 1 becomes a side branch from here on" in [words for words, _ in came.repairs]
+
+
+@pytest.mark.parametrize("picture", PICTURES)
+def test_until_a_node_and_onward_from_it_meet_in_that_node_alone(picture: str) -> None:
+    draft = state(picture).draft
+    for one in draft.into:
+        assert draft.until(one) + draft.onward(one)[1:] == draft.branch(one)
+
+
+def test_a_relabelling_until_a_node_leaves_what_lies_beyond_it() -> None:
+    at = state()
+    middle = node(at, 0, 4)
+    told = apply(at, Relabel(middle, Label.SUPPORT, "until")).draft
+    assert {told.into[n][1] for n in at.draft.until(middle)} == {Label.SUPPORT}
+    assert {told.into[n][1] for n in at.draft.onward(middle)[1:]} == {Label.LEADER}
 
 
 def test_a_support_that_becomes_a_leader_takes_what_hangs_on_it_along() -> None:

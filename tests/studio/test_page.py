@@ -15,6 +15,8 @@ import numpy as np
 from prunus.corrections import AddPath, Settings
 from prunus.io.skeletons import read_skeleton
 from prunus.model import Label
+from prunus.studio.modes.correct import REACHES
+from prunus.studio.modes.mode import put
 from prunus.studio.shelf import Item
 from prunus.studio.tree import Tree
 from tests.studio.conftest import Remote, Visit, until
@@ -95,6 +97,49 @@ def test_a_path_is_added_stop_by_stop(opened: Opened) -> None:
     assert isinstance(visit.desk.tree.work.acts[-1], AddPath)
 
 
+def test_a_path_that_is_drawn_in_another_way_is_at_its_end(opened: Opened) -> None:
+    visit = opened()
+    visit.press("Correct")
+    draft = visit.desk.tree.state.draft
+    visit.page.keyboard.press("p")
+    visit.reads("Click a node of the tree, then")
+    begin, end = visit.a_branch(Label.LEADER), free_superpoint(visit)
+    visit.click(draft.places[begin])
+    until(lambda: visit.desk.mode.path.stops == [begin], "the first stop")
+    visit.click(draft.places[end])
+    until(lambda: visit.desk.mode.path.stops == [begin, end], "the second stop")
+    visit.page.get_by_label("routed").uncheck()
+    put(visit.desk.mode.label, "trunk")
+    visit.press("end")
+    visit.reads("instead:")
+    visit.press("Do 1 instead")
+    until(lambda: end in visit.nodes, "the path")
+    until(lambda: visit.desk.mode.tool == "pick" and not visit.desk.mode.path.stops, "its end")
+
+
+def test_the_close_view_turns_about_what_is_picked(opened: Opened) -> None:
+    visit = opened()
+    visit.press("Correct")
+    visit.reads("Click a branch, then")
+    node = visit.a_branch(Label.LEADER)
+    visit.click_edge(node)
+    skeleton, row = visit.picture.skeleton, visit.picture.row(node)
+    middle = skeleton.xyz[[row, skeleton.parent[row]]].mean(axis=0)
+    visit.page.keyboard.press("c")
+    until(lambda: np.allclose(visit.desk.client.camera.look_at, middle, atol=0.01), "it in view")
+    until(lambda: np.linalg.norm(visit.eye.position - middle) < 2, "an eye that is near")
+
+
+def test_how_far_a_relabelling_goes_is_told_by_keys(opened: Opened) -> None:
+    visit = opened()
+    visit.press("Correct")
+    visit.reads("Click a branch, then")
+    visit.click_edge(visit.a_branch(Label.LEADER))
+    for key, reach in REACHES.items():
+        visit.page.keyboard.press(key.lower())
+        until(lambda reach=reach: visit.desk.mode.reach.value == reach, reach)
+
+
 def test_points_are_marked_by_a_box_and_the_file_stays(
     opened: Opened, orchard: Path, tmp_path: Path
 ) -> None:
@@ -126,7 +171,7 @@ def test_edges_are_labelled_one_key_each(opened: Opened, tmp_path: Path) -> None
         visit.reads(f"{count} of")
         asked.append(visit.desk.mode.queue.edge)
     assert len(set(asked)) == 4
-    unsure = np.abs(visit.desk.picture.graph.confidence[asked] - 0.5)
+    unsure = np.abs(visit.desk.mode.queue.graph.confidence[asked] - 0.5)
     assert (np.diff(unsure) >= 0).all()
     assert (tmp_path / "oak" / "labels.jsonl").read_text().count("\n") == 4
 

@@ -1,8 +1,10 @@
+from dataclasses import replace
+
 import numpy as np
 
 from prunus.model import Kind, Label, PointCloud
 from prunus.studio.header import header
-from prunus.studio.picture import GREY, KINDS, Picture, Slab, colours_of, thinned
+from prunus.studio.picture import DEPTHS, GREY, KINDS, Picture, Slab, colours_of, thinned
 from prunus.studio.words import block, card, legend, quiet
 from tests.drawn import tree
 
@@ -47,6 +49,16 @@ def test_points_have_their_own_colour_that_of_their_class_or_grey() -> None:
     assert by_class == [list(KINDS[Kind.STRAY]), list(KINDS[Kind.WIRE])]
     assert colours_of(picture, rows, "grey").tolist() == [list(GREY)] * 2
     assert list(KINDS) == list(Kind)
+
+
+def test_by_depth_the_nearest_and_the_farthest_of_the_tree_are_farthest_apart_in_colour() -> None:
+    skeleton = replace(tree(), xyz=tree().xyz + np.outer(tree().xyz[:, 2], [0, 0.5, 0]))
+    y = np.array([-9.0, *skeleton.xyz[:, 1][[0, -1]], 9.0])
+    cloud = PointCloud.from_xyz(np.column_stack([y * 0, y, y * 0]))
+    told = colours_of(Picture(cloud, None, skeleton), np.arange(4), "depth").tolist()
+    assert told[0] == told[1] == list(DEPTHS[0])
+    assert told[3] == list(DEPTHS[-1])
+    assert told[2] not in (told[0], list(GREY))
 
 
 def test_the_card_tells_of_edge_and_branch_and_escapes_names() -> None:

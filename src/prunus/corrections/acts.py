@@ -15,8 +15,8 @@ from prunus.corrections.where import Where
 from prunus.corrections.wire import Checked, KindWord, LabelWord, Node, Place, read, told
 from prunus.errors import PrunusError
 
-Reach = Literal["edge", "branch", "onward"]
-"""One edge, the whole branch that holds it, or from it to the tip of that branch."""
+Reach = Literal["edge", "branch", "onward", "until"]
+"""One edge, the branch that holds it, from it to the branch's tip, or from its start until it."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class RemoveBranch(Checked):
 
 @dataclass(frozen=True)
 class Relabel(Checked):
-    """Another label for the edge into a node, its branch, or from there to the branch's tip.
+    """Another label for the edge into a node, its branch, or the part of it after or before.
 
     The label that is there already confirms it: the search keeps it.
     """

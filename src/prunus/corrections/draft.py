@@ -109,6 +109,11 @@ class Draft:
             found.append(further)
         return found
 
+    def until(self, node: int) -> list[int]:
+        """The nodes of a branch from its first to one of them."""
+        branch = self.branch(node)
+        return branch[: branch.index(node) + 1]
+
     def branch(self, node: int) -> list[int]:
         """The nodes of the branch (see `measure.branches`) that holds the edge into a node."""
         first = node

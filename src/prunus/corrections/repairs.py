@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -76,6 +77,7 @@ def _other_ways(draft: Draft, act: Step | Together, names: dict[int, str]) -> It
         own, word = names[act.node], a_branch(act.label)
         yield f"all of {own} becomes {word}", replace(act, reach="branch")
         yield f"{own} becomes {word} from here on", replace(act, reach="onward")
+        yield f"{own} becomes {word} until here", replace(act, reach="until")
         yield f"this edge alone becomes {word}", replace(act, reach="edge")
     elif isinstance(act, RemoveEdge | RemoveBranch) and act.node in draft.into:
         first = draft.branch(act.node)[0] if isinstance(act, RemoveBranch) else act.node
@@ -152,15 +154,15 @@ def _runs(wrong: Draft, changed: dict[int, Label]) -> list[Step]:
 
 
 def _told(wrong: Draft, right: Draft, names: dict[int, str]) -> str:
-    """`and leader 2 becomes a support`, `without side branch 4`."""
+    """`and leader 2 becomes a support`, `without 7 cm of side branch 4`."""
     parts = []
-    gone = [n for n in wrong.nodes[1:] if n not in right and wrong.into[n][0] in right]
+    gone = [n for n in wrong.nodes[1:] if n not in right]
     if gone:
-        parts.append(f"without {listed([_part(wrong, n, names) for n in gone])}")
+        parts.append(f"without {listed(_parts(wrong, gone, names))}")
     for label in Label:
         changed = [n for n in wrong.nodes[1:]
                    if n in right and right.into[n][1] == label != wrong.into[n][1]]  # fmt: skip
-        called = list(dict.fromkeys(names.get(n, "the new path") for n in changed))
+        called = _parts(wrong, changed, names)
         if called:
             become = f"becomes {a_branch(label)}" if len(called) == 1 else (
                 f"become {NOUNS[label]}" + ("es" if label == Label.SIDE_BRANCH else "s")
@@ -169,6 +171,17 @@ def _told(wrong: Draft, right: Draft, names: dict[int, str]) -> str:
     return f"as asked, {' and '.join(parts)}"
 
 
-def _part(draft: Draft, node: int, names: dict[int, str]) -> str:
-    name = names.get(node, "the new path")
-    return name if draft.branch(node)[0] == node else f"the end of {name}"
+def _parts(draft: Draft, nodes: list[int], names: dict[int, str]) -> list[str]:
+    """The branches to which edges belong; of those that are not meant in whole, how much is."""
+    called = {node: names.get(node, NEW) for node in draft.nodes[1:]}
+    whole = Counter(called.values())
+    meant = Counter(called[node] for node in nodes)
+    metres = {name: sum(draft.length(n) for n in nodes if called[n] == name) for name in meant}
+    return [
+        name if meant[name] == whole[name] else f"{100 * metres[name]:.0f} cm of {name}"
+        for name in meant
+    ]
+
+
+NEW = "the new path"
+"""What is not in the tree yet is called so."""

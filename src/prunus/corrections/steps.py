@@ -172,6 +172,7 @@ def _relabel(draft: Draft, act: Relabel, _: SeededGraph) -> Stepped:
         "edge": lambda node: [node],
         "branch": draft.branch,
         "onward": draft.onward,
+        "until": draft.until,
     }[act.reach](act.node)
     into = {node: (draft.into[node][0], act.label) for node in reached}
     return Stepped(draft.changed(into), frozenset(reached))

@@ -32,7 +32,7 @@ WIDE = 0.895
 SHOWS = {
     Label.TRUNK: (0.3, 0.9),
     Label.SUPPORT: (1.2, 1.0),
-    Label.LEADER: (1.3, 0.85),
+    Label.LEADER: (1.45, 1.0),
     Label.SIDE_BRANCH: (1.08, 0.92),
 }
 """How much of the noise a ribbon shows, at the foot and at the tip (fitted, see bench.refine)."""

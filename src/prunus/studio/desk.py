@@ -28,6 +28,8 @@ from prunus.studio.words import block, card, legend, quiet
 
 REACH = 12.0
 """An edge is picked so many pixels beside it."""
+CLOSE = 0.18
+"""The close view shows so many metres around an edge."""
 TOLD, CONTROLS = 240, 350
 """Width of the panel on the left, which tells, and of that on the right, pixels."""
 
@@ -154,6 +156,15 @@ class Desk:
             stands = np.allclose(eye.position, position, atol=1e-3)
             if stands and size != (eye.width, eye.height):
                 self.view(name)
+
+    def close_up(self) -> None:
+        """Show the picked edge from near by; from now on the view turns about it."""
+        row = None if self.picture is None else self.picture.row(self.picked)
+        if self.picture is None or self.picture.skeleton is None or not row:
+            raise PrunusError("no edge is picked; click one first")
+        skeleton = self.picture.skeleton
+        ends = skeleton.xyz[[int(skeleton.parent[row]), row]]
+        self.frame(ends.min(axis=0) - CLOSE, ends.max(axis=0) + CLOSE)
 
     def frame(self, low: Floats, high: Floats) -> None:
         """Show a box (3,), (3,) from where the eye looks now."""

@@ -25,7 +25,8 @@ class FolderPanel:
         watch(self.list, self._chosen)
         put(self.list, self.list.options[self.desk.number])
         names = ("previous", "next", "done") if several else ("done",)
-        steps = gui.add_button_group("Work", names, hint="Keys: page up, page down")
+        hint = "Keys: page up, page down" if several else "Once more: in work again"
+        steps = gui.add_button_group("Work", names, hint=hint)
         steps.on_click(lambda event: self._step(event.target.value))
 
     def keys(self) -> list[Key]:

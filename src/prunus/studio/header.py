@@ -18,12 +18,21 @@ def header(tree: Tree) -> str:
     if state is None:
         doing = "reading" if tree.cloud is None else "looking for the skeleton"
         return block(name, quiet(f"{doing} ..."))
-    return block(name, *_work(tree), _edits(tree), *map(quiet, state.result.warnings))
+    return block(name, *_work(tree), _edits(tree), *map(quiet, _warnings(tree, first=True)))
 
 
 def notes(tree: Tree) -> str:
     """How the tree was read and found."""
-    return block(*map(quiet, tree.notes))
+    before = [f"before your acts: {warning}" for warning in _warnings(tree, first=False)]
+    return block(*map(quiet, [*before, *tree.notes]))
+
+
+def _warnings(tree: Tree, first: bool) -> list[str]:
+    """What is wrong with the machine's skeleton: said first until an act stands, then beside."""
+    work = tree.work
+    if work is None or (work.position == 0) != first:
+        return []
+    return list(work.state.result.warnings)
 
 
 def _work(tree: Tree) -> list[str]:

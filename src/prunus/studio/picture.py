@@ -26,6 +26,8 @@ def colour_of(text: str) -> Colour:
 
 
 GREY: Colour = (172, 172, 172)
+DEPTHS: tuple[Colour, ...] = ((215, 25, 28), (230, 160, 40), (120, 170, 60), (44, 80, 190))
+"""The colours of points by depth, the nearest first."""
 KINDS: dict[Kind, Colour] = {
     Kind.TARGET: (90, 90, 90),
     **{kind: colour_of(LEFT_OUT[kind]) for kind in Kind if kind in LEFT_OUT},
@@ -96,9 +98,20 @@ class Slab:
 
 
 def colours_of(picture: Picture, rows: Ints, by: str) -> Bytes:
-    """The colour (R, 3) of some points: their own ('rgb'), by 'class', or grey."""
+    """The colour (R, 3) of some points: their own ('rgb'), by 'class' or 'depth', or grey."""
     if by == "rgb" and picture.scan.rgb is not None:
         return picture.scan.rgb[rows]
     if by == "class" and picture.kind is not None:
         return np.array(list(KINDS.values()), np.uint8)[picture.kind[rows]]
+    if by == "depth":
+        return _by_depth(picture, picture.scan.xyz[rows, 1])
     return np.broadcast_to(np.array(GREY, np.uint8), (len(rows), 3))
+
+
+def _by_depth(picture: Picture, depth: Floats) -> Bytes:
+    """From the nearest to the farthest of the tree, by steps between the colours of DEPTHS."""
+    low, high = (float(corner[1]) for corner in picture.box)
+    share = np.clip((depth - low) / max(high - low, 1e-9), 0.0, 1.0)
+    steps = np.linspace(0.0, 1.0, len(DEPTHS))
+    channels = [np.interp(share, steps, channel) for channel in zip(*DEPTHS, strict=True)]
+    return np.asarray(np.rint(np.column_stack(channels)), np.uint8)

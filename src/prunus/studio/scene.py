@@ -106,7 +106,7 @@ class Painter:
             shown = label.word in wishes.layers
             name = f"/front/{label.word}"
             self.lines(name, ends, COLOURS[label], WIDTHS[label], wishes, shown)
-        self.dots("/front/base", skeleton.xyz[:1], (204, 0, 0), 0.035, "base" in wishes.layers)
+        self.dots("/front/base", skeleton.xyz[:1], (204, 0, 0), 0.016, "base" in wishes.layers)
         if picture.machine is not None:
             ends = picture.machine.xyz[picture.machine.edges]
             shown = "machine's skeleton" in wishes.layers
@@ -123,9 +123,9 @@ class Painter:
             self.lines(f"/front/{name}", graph.xyz[chosen], colour_of(colour), 2.0, wishes, shown)
         inside = wishes.slab.holds(graph.xyz)
         shown = "superpoints" in wishes.layers
-        self.dots("/front/superpoints", graph.xyz[inside], (90, 90, 90), 0.014, shown)
+        self.dots("/front/superpoints", graph.xyz[inside], (90, 90, 90), 0.006, shown)
         tips = graph.xyz[graph.tips]
-        self.dots("/front/tips", tips, (204, 121, 167), 0.03, "tips" in wishes.layers)
+        self.dots("/front/tips", tips, (204, 121, 167), 0.014, "tips" in wishes.layers)
 
     def mark(self, name: str, ends: Floats, colour: Colour, width: float) -> None:
         """Lines (E, 2, 3) over all else, such as what was picked; none takes them away."""
@@ -135,7 +135,7 @@ class Painter:
         """Lines (E, 2, 3) behind the skeleton, around what was picked; none takes them away."""
         self.lines("/halo/picked", ends, colour, width, Wishes(), True)
 
-    def places(self, name: str, xyz: Floats, colour: Colour, size: float = 0.03) -> None:
+    def places(self, name: str, xyz: Floats, colour: Colour, size: float = 0.012) -> None:
         """Places (Q, 3) such as the stops of a path; none takes them away."""
         self.dots(f"/mark/{name}", xyz, colour, size, True)
 

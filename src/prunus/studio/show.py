@@ -15,7 +15,9 @@ from prunus.studio.scene import LAYERS, Wishes, without
 if TYPE_CHECKING:
     from prunus.studio.desk import Desk
 
-COLOURS = ("grey", "rgb", "class")
+COLOURS = ("grey", "depth", "rgb", "class")
+CLOSE = "close"
+"""The view of what is picked."""
 
 
 class Show:
@@ -30,8 +32,8 @@ class Show:
     def build(self) -> None:
         """Make the controls."""
         gui = self.desk.gui
-        views = gui.add_button_group("View", tuple(VIEWS), hint="Keys F, R and T")
-        views.on_click(lambda event: self.desk.view(event.target.value))
+        views = gui.add_button_group("View", (*VIEWS, CLOSE), hint="Keys F, R, T, C")
+        views.on_click(lambda event: self.desk.try_to(lambda: self._view(event.target.value)))
         with gui.add_folder("Show"):
             self._points()
             self.slab = gui.add_multi_slider(
@@ -62,6 +64,7 @@ class Show:
             Key("F", "Front view", lambda: desk.view("front")),
             Key("R", "View from the right", lambda: desk.view("side")),
             Key("T", "View from the top", lambda: desk.view("top")),
+            Key("C", "Close view of what is picked", desk.close_up),
         ]
 
     def fit(self, picture: Picture) -> None:
@@ -80,10 +83,16 @@ class Show:
         for layer, box in self.boxes.items():
             put(box, layer in wishes.layers)
 
+    def _view(self, name: str) -> None:
+        if name == CLOSE:
+            self.desk.close_up()
+        else:
+            self.desk.view(name)
+
     def _points(self) -> None:
         gui = self.desk.gui
         self._box("points")
-        self.colour = gui.add_dropdown("Colour", COLOURS)
+        self.colour = gui.add_dropdown("Colour", COLOURS, hint="depth: red in front, blue behind")
         watch(self.colour, lambda value: self._wish(colour=value))
         self.others = gui.add_checkbox("others", False, hint="What is not the tree: ground, posts")
         watch(self.others, lambda value: self._wish(others=value))

@@ -56,7 +56,11 @@ class Clean(Mode):
         self.whole = gui.add_dropdown("All of", KINDS, initial_value=KINDS[Kind.GROUND])
         marks = gui.add_button_group("", ("mark all of it",))
         marks.on_click(lambda event: self.desk.try_to(self._whole))
-        again = gui.add_button("Build the tree again", hint="From the points that are target now")
+        again = gui.add_button(
+            "Build the tree again",
+            hint="From the points that are target "
+            "now; what was corrected of the skeleton gives way",
+        )
         again.on_click(lambda event: self.desk.try_to(self._rebuild))
         self.history.build()
         self.counts = gui.add_html("")
@@ -93,7 +97,7 @@ class Clean(Mode):
         state = self.desk.tree.state
         picked = state is not None and state.base is not None and self.before is not None
         base = state.base[None] if picked else np.zeros((0, 3))  # type: ignore[union-attr,index]
-        self.desk.painter.places("base", base, PICKED, 0.05)
+        self.desk.painter.places("base", base, PICKED, 0.02)
 
     def clicked(self, ray: Ray, screen: tuple[float, float]) -> None:
         """What the tool asked for."""
@@ -172,7 +176,8 @@ class Clean(Mode):
         self.desk.act(Mark(where, Kind[self.kind.value.upper()]))
 
     def _rebuild(self) -> None:
-        self.desk.say("Build", "the chain runs again on the points of the tree")
+        self.desk.say("Build", "the chain runs again on the points of the tree; what was corrected "
+                      "of the skeleton gives way, undo brings it back")  # fmt: skip
         self.desk.act(Rebuild())
 
     def _takes(self, word: str) -> Callable[[], None]:

@@ -27,6 +27,8 @@ from prunus.studio.scene import PICKED
 from prunus.studio.words import block, quiet, word_of
 
 WORDS = tuple(word_of(label) for label in Label)
+REACHES = {"B": "branch", "I": "edge", "O": "onward", "U": "until"}
+"""How far a relabelling goes, by key; W, A, S, D, Q and E fly the camera."""
 ASKS = {
     "pick": "Click a branch, then choose what to do with it.",
     "path": "Click a node of the tree, then each stop of the new path; Enter ends it, Escape "
@@ -49,8 +51,9 @@ class Correct(Mode):
         self.asked = gui.add_html(block(quiet(ASKS["pick"])))
         self._group("Remove", {"edge": self._remove_edge, "branch": self._remove_branch},
                     "Delete, Shift Delete")  # fmt: skip
-        self.reach = gui.add_dropdown("Relabel the", ("branch", "edge", "onward"),
-                                      hint="onward: from here to the tip")  # fmt: skip
+        self.reach = gui.add_dropdown("Relabel the", tuple(REACHES.values()),
+                                      hint="onward: from here to the tip; until: from its start to "
+                                      "here. Keys B, I, O, U")  # fmt: skip
         self._group("as", {word: self._labels(Label(n)) for n, word in enumerate(WORDS)},
                     "Keys 1 to 4")  # fmt: skip
         self._group("Path", {"new": self._begin, "end": self._end, "give up": self._stop},
@@ -72,6 +75,10 @@ class Correct(Mode):
             Key("delete", "Remove the edge", self._remove_edge),
             Key("delete", "Remove the branch", self._remove_branch, "shift"),
             *labels,
+            *[
+                Key(key, f"Relabel the {reach}", self._takes(reach))
+                for key, reach in REACHES.items()
+            ],
             Key("P", "New path", self._begin),
             Key("enter", "End the path", self._end),
             Key("escape", "Give up", self._stop),
@@ -79,6 +86,10 @@ class Correct(Mode):
             Key("M", "Move the base", self._base),
             *self.history.keys(),
         ]
+
+    def acted(self) -> None:
+        """The path that was refused is in the tree, in another way."""
+        self._stop()
 
     def leave(self) -> None:
         """A path that was not ended is given up."""
@@ -128,6 +139,9 @@ class Correct(Mode):
             self.desk.act(Relabel(self._picked(), label, reach))
 
         return relabel
+
+    def _takes(self, reach: str) -> Callable[[], None]:
+        return lambda: put(self.reach, reach)
 
     def _search(self) -> None:
         self.desk.act(Search())

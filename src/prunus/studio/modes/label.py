@@ -138,7 +138,7 @@ class Label(Mode):
         assert self.images is not None
         self.image.image = _drawn(self.images[edge])
         self.desk.painter.mark("asked", ends[None], PICKED, 6.0)
-        self.desk.painter.places("asked-ends", ends, PICKED, 0.012)
+        self.desk.painter.places("asked-ends", ends, PICKED, 0.006)
         self.desk.frame(ends.min(axis=0) - AROUND, ends.max(axis=0) + AROUND)
         sure = float(queue.graph.confidence[edge])
         length = 100 * float(np.linalg.norm(ends[1] - ends[0]))

@@ -57,6 +57,9 @@ class Mode:
     def leave(self) -> None:
         """Another mode was chosen, or another tree."""
 
+    def acted(self) -> None:
+        """What was refused has been done in another way."""
+
     def redraw(self) -> None:
         """The tree has changed."""
 

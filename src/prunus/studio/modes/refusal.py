@@ -37,7 +37,7 @@ class Refusal:
         told = ["instead:", *offers] if offers else []
         self.text.content = block(escape(str(refused).replace("_", " ")), *told)
         self.folder.visible = True
-        self.desk.painter.places("refused", refused.places, PLACE, 0.05)
+        self.desk.painter.places("refused", refused.places, PLACE, 0.02)
         with self.folder:
             self.repairs = [
                 self._offer(f"Do {number} instead", act)
@@ -53,7 +53,8 @@ class Refusal:
         self.desk.painter.places("refused", np.zeros((0, 3)), PLACE)
 
     def _do(self, act: Act) -> None:
-        self.desk.act(act)
+        if self.desk.act(act):
+            self.desk.mode.acted()
 
     def _offer(self, name: str, act: Act) -> viser.GuiButtonHandle:
         button = self.desk.gui.add_button(name, color="orange")
