@@ -510,6 +510,9 @@ def convert(
     cloud: Annotated[
         Path | None, typer.Option(help="The cloud, to go into a bag (.mcap) with the tree.")
     ] = None,
+    cuts: Annotated[
+        Path | None, typer.Option(help="A plan (see `prunus cuts`), to go into the bag as poses.")
+    ] = None,
 ) -> None:
     """Convert skeletons and clouds to what others read; says what a kind of file cannot hold.
 
@@ -518,14 +521,15 @@ def convert(
 
     For Blender, thick as it is: `prunus convert out/refined.json tree.glb`
 
-    For RViz or Foxglove: `prunus convert out/refined.json tree.mcap --cloud tree.ply`
+    For RViz or Foxglove: `prunus convert out/refined.json tree.mcap --cloud tree.ply --cuts
+    plan.json`
 
     A cloud for another tool: `prunus convert tree.laz tree.xyz`
     """
     from prunus.convert import convert_file
 
     try:
-        notes = convert_file(source, target, unit and unit.value, cloud)
+        notes = convert_file(source, target, unit and unit.value, cloud, cuts)
     except PrunusError as error:
         _stop(error)
     for note in notes:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,14 +17,19 @@ from prunus.io.plans import PlanFile
 from prunus.io.skeletons import InputRecord, read_record, read_skeleton
 from prunus.kernels.neighbours import within
 from prunus.measure.cuts import Cut, CutRules, Plan, plan_cuts
+from prunus.measure.cuts.plan import as_it_is
 from prunus.measure.cuts.reach import samples
-from prunus.measure.refine import refined
+from prunus.measure.refine import Refined, refined
 from prunus.model import FRAMES, Floats, Label, PointCloud, RigidMotion, Skeleton
 from prunus.pipeline import REFINED_WITH, skeletonize
 
 SKELETONS = (".json", ".swc")
 OWN = 0.06
 """Points of a scan so near to a skeleton are taken for those of its tree, metres."""
+FINE = 0.02
+"""A skeleton with nodes so near to each other was refined already, metres."""
+SEEN = 0.02
+"""Its nodes are seen where a point is so near, metres."""
 Place = tuple[float, float, float]
 
 
@@ -72,7 +77,7 @@ def _on_skeleton(source: Source, rules: CutRules) -> PlanFile:
         return plan_file(plan, to_file, skeleton=path.name, notes=notes)
     cloud = scan.cloud
     in_house = skeleton.moved(cloud.to_input.inverse())
-    plan = plan_cuts(refined(in_house, _own(cloud, in_house)), cloud.xyz, rules)
+    plan = plan_cuts(_refined(in_house, cloud), cloud.xyz, rules)
     notes += scan.notes
     return plan_file(plan, cloud.to_input, skeleton=path.name, input=scan.record, notes=notes)
 
@@ -82,6 +87,14 @@ def _scan_of(source: Source, record: InputRecord | None) -> Scan:
         raise PrunusError(f"{source.path}: does not say of which cloud it is")
     found = original_of(record, source.path.parent, source.scans)
     return open_scan(found, source.frame, source.unit)
+
+
+def _refined(skeleton: Skeleton, cloud: PointCloud) -> Refined:
+    """A skeleton refined with the points near it, both in the house frame; a fine one as it is."""
+    if len(skeleton) > 1 and np.median(skeleton.lengths[1:]) < FINE:
+        seen = np.diff(within(cloud.xyz, skeleton.xyz, SEEN)[0]) > 0
+        return replace(as_it_is(skeleton), radius_error=np.full(len(seen), np.nan), seen=seen)
+    return refined(skeleton, _own(cloud, skeleton))
 
 
 def _own(cloud: PointCloud, skeleton: Skeleton) -> PointCloud:
