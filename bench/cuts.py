@@ -1,8 +1,10 @@
 """`python -m bench.cuts [--trees 20] [--seed 970000] [--rules FILE]`: plans against the true trees.
 
 The rules ask for cuts on the true tree, as far as the scan shows it, and on what the chain makes of
-the scan. A cut that the chain plans is right where the rules ask for one on the same true branch,
-whether or not the scan shows all of it. It is in place within 15 mm along the branch.
+the scan, refined; and on the true topology, made rough and refined, to see what the lines alone
+cost. A planned cut is right where the rules ask for one on the same true branch, whether or not the
+scan shows all of it, and needless where that wood comes down with another cut. It is in place
+within 15 mm along the branch.
 """
 
 from __future__ import annotations
@@ -15,11 +17,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bench.refine import thinned
 from prunus.experiment.orchard import Tree, tree_of
 from prunus.kernels.away import away_from
 from prunus.measure import shown
 from prunus.measure.cuts import Cut, CutRules, Plan, plan_cuts, shipped_rules
 from prunus.measure.cuts.limbs import Limb, Limbs
+from prunus.measure.refine import Refined, refined
 from prunus.model import Floats, Label, Skeleton
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
@@ -58,17 +62,27 @@ class Outcome:
     seconds: float
 
 
-def outcome(seed: int, setting: Setting, rules: CutRules) -> Outcome:
+def outcome(seed: int, setting: Setting, rules: CutRules, topology: str = "chain") -> Outcome:
     """Plan the cuts of the scan of that seed, and judge them by the true tree."""
     tree = tree_of(seed, setting)
-    params = Parameters().changed("isolation", isolate="never")
-    result = skeletonize(tree.cloud, tree.truth.xyz[0], params)
-    fine = result.refined
+    fine = _chain(tree) if topology == "chain" else _true(tree, seed)
     scan = tree.cloud.to_input.inverse().apply(simulate_scan(seed, setting).xyz)
     before = time.process_time()
     plan = plan_cuts(fine, scan, rules)
     spent = time.process_time() - before
     return judged(tree, plan, rules, spent)
+
+
+def _chain(tree: Tree) -> Refined:
+    """What the chain makes of a tree, refined."""
+    params = Parameters().changed("isolation", isolate="never")
+    return skeletonize(tree.cloud, tree.truth.xyz[0], params).refined
+
+
+def _true(tree: Tree, seed: int) -> Refined:
+    """The true topology with few nodes, each astray, refined."""
+    rough = thinned(shown(tree.truth, tree.counts), np.random.default_rng(seed))
+    return refined(rough.moved(tree.cloud.to_input.inverse()), tree.cloud)
 
 
 def judged(tree: Tree, plan: Plan, rules: CutRules, seconds: float) -> Outcome:
@@ -184,10 +198,11 @@ def main() -> None:
     rules = CutRules.from_toml(chosen.rules) if chosen.rules else shipped_rules()
     settings: tuple[Setting, ...] = ("clean", "field")
     for setting in settings:
-        seeds = range(chosen.seed, chosen.seed + chosen.trees)
-        print(f"== {setting}")
-        for line in lines_of([outcome(seed, setting, rules) for seed in seeds]):
-            print(line)
+        for topology in ("true topology", "chain"):
+            seeds = range(chosen.seed, chosen.seed + chosen.trees)
+            print(f"== {setting}, {topology}")
+            for line in lines_of([outcome(seed, setting, rules, topology) for seed in seeds]):
+                print(line, flush=True)
 
 
 if __name__ == "__main__":
