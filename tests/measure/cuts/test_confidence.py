@@ -12,7 +12,8 @@ from prunus.model import Label
 NAN = float("nan")
 GOOD = Evidence(
     least=0.98, path=0.9, seen=1.0, length=0.3, diameter=0.01, doubt=0.002, thick=0.4, bend=4.0,
-    slant=1.1, touch=0.3, touched="leader 2", upright=80.0, spread=0.009, aside=0.003, behind=0.0,
+    slant=1.1, touch=0.3, touched="leader 2", upright=80.0, spread=0.009, aside=0.003,
+    behind=0.0, past=0.0,
 )  # fmt: skip
 
 

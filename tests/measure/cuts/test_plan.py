@@ -106,6 +106,16 @@ def test_a_tip_that_touches_another_leader_may_be_its_foot() -> None:
     assert "its tip touches leader 2: it may belong to it" in reasons(touching, tubes(touching))
 
 
+def test_wood_past_the_tip_is_said() -> None:
+    skeleton = drawn()
+    on = np.column_stack([np.linspace(0.32, 0.5, 400), np.zeros(400), np.full(400, 0.5)])
+    across = np.column_stack([np.full(400, 0.35), np.zeros(400), np.linspace(0.35, 0.65, 400)])
+    said = "wood goes on past its tip that the skeleton does not have"
+    assert said not in reasons(skeleton)
+    assert said not in reasons(skeleton, np.concatenate([tubes(skeleton), on])), "not enough of it"
+    assert said in reasons(skeleton, np.concatenate([tubes(skeleton), across]))
+
+
 def test_a_leader_that_lies_level_may_be_a_support() -> None:
     skeleton = drawn(" b\n b\n b\nlllllll\nl\nl\nl\nsts\n t\n o")
     assert "its leader lies level there: it may be a support" in reasons(skeleton, tubes(skeleton))

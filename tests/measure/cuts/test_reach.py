@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from prunus.measure.cuts.reach import FREE, WAYS, approach, around, blade_normal, samples
+from prunus.measure.cuts.reach import FREE, WAYS, approach, blade_normal, samples
 from prunus.model import Floats
 
 CUT, UP = np.zeros(3), np.array([0.0, 0.0, 1.0])
@@ -77,13 +77,6 @@ def test_the_blade_moves_in_its_own_plane_and_is_as_square_as_it_can_be() -> Non
     normal = blade_normal(heading, direction)
     assert normal == pytest.approx([0, 0, 1])
     assert blade_normal(UP, direction) == pytest.approx(UP)
-
-
-def test_points_around_each_cut() -> None:
-    scan = np.array([[0.0, 0.0, 0.0], [0.29, 0.0, 0.0], [0.31, 0.0, 0.0], [1.0, 0.0, 0.0]])
-    near = around(scan, np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
-    assert [len(points) for points in near] == [2, 1]
-    assert around(scan, NOTHING) == []
 
 
 def test_samples_follow_the_edges_to_their_ends() -> None:

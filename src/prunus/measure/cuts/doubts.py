@@ -44,6 +44,8 @@ def doubts_of(demand: Demand, evidence: Evidence, confidence: float, rules: CutR
             found.append("its leader lies level there: it may be a support")
         if evidence.behind > review.behind:
             found.append("wood goes straight on behind its leader: it may be another's")
+        if evidence.past > review.past:
+            found.append("wood goes on past its tip that the skeleton does not have")
         if evidence.touch < TOUCH:
             found.append(f"its tip touches {evidence.touched}: it may belong to it")
     return found

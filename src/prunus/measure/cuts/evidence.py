@@ -8,32 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from prunus.kernels.away import away_from
-from prunus.kernels.neighbours import within
-from prunus.measure.cuts.limbs import LIKELY_RADIUS, Limb, Limbs, stretch_near
+from prunus.measure.cuts.limbs import LIKELY_RADIUS, Limb, Limbs
+from prunus.measure.cuts.nearby import Nearby, told_by_points
 from prunus.measure.cuts.rules import Demand
 from prunus.measure.refine import Refined
 from prunus.model import Floats
 
-CLEAR = 0.010
-"""Points over so many metres off the bark of the parent are not the parent's."""
-AROUND = 0.18
-"""Points farther from the cut are not looked at, metres."""
 OUTSET, ONWARD = 0.04, 0.12
 """A branch bends at its foot when its first so many metres turn into those up to there."""
-AT_CUT = 0.03
-"""Points so near to the cut tell whether a thin branch is there, metres."""
-LINE = (-0.01, 0.05, 0.025)
-"""The line of a branch is that of points so far along from the cut, from and to, and beside it."""
-FEWEST = 6
-"""Fewer points tell no line."""
-NO_LINE = 0.02
-"""Where they tell none, it counts as so far aside, metres."""
-BACK = (0.02, 0.10, 0.01)
-"""Wood is looked for behind the parent from here to there, metres, in such steps."""
-BESIDE = 0.012
-"""A place there has wood where points lie so near ..."""
-SOME = 3
-"""... and there are so many of them."""
 TINY = 1e-9
 
 
@@ -50,7 +32,8 @@ class Evidence:
 
     From the points: `spread`, their mean distance from its axis at the cut, metres; `aside`, how
     far from the cut the line through them passes; `behind`, how much of the straight way back
-    beyond the parent has wood, as where a branch of another leader passes by.
+    beyond the parent has wood, as where a branch of another leader passes by; `past`, how many
+    cubes of 1 cm hold wood ahead of its tip that the skeleton does not have.
     """
 
     least: float
@@ -68,20 +51,17 @@ class Evidence:
     spread: float = math.nan
     aside: float = math.nan
     behind: float = math.nan
+    past: float = math.nan
 
 
-def evidence_of(limbs: Limbs, tree: Refined, demand: Demand, points: Floats | None) -> Evidence:
-    """The evidence of the branch that a demand cuts; `points` (Q, 3) of the scan around the cut."""
+def evidence_of(limbs: Limbs, tree: Refined, demand: Demand, points: Nearby | None) -> Evidence:
+    """The evidence of the branch that a demand cuts, with the points of the scan, if any."""
     limb, skeleton = demand.limb, tree.skeleton
-    rows = limb.rows[1:]
-    parent = limbs.parent_of(limb)
+    rows, parent = limb.rows[1:], limbs.parent_of(limb)
     radius = _parent_radius(limbs, limb)
     diameter = 2 * limb.value_at(demand.along, skeleton.radius)
     touch, touched = _nearest_other(limbs, limb)
-    by_points = (
-        {} if points is None or parent is None
-        else _from_points(limb, parent, radius, demand.along, points)
-    )  # fmt: skip
+    told = {} if points is None else told_by_points(limbs, limb, radius, demand.along, points)
     return Evidence(
         least=_least(skeleton.confidence[rows]),
         path=_least(skeleton.confidence[limbs.path_to(limb)]),
@@ -95,7 +75,7 @@ def evidence_of(limbs: Limbs, tree: Refined, demand: Demand, points: Floats | No
         touch=touch,
         touched=touched,
         upright=math.nan if parent is None else _rise(parent, limb.xyz[0]),
-        **by_points,
+        **told,
     )
 
 
@@ -129,45 +109,6 @@ def _nearest_other(limbs: Limbs, limb: Limb) -> tuple[float, str]:
         if away < best:
             best, name = away, other.name
     return best, name
-
-
-def _from_points(
-    limb: Limb, parent: Limb, radius: float, along: float, points: Floats
-) -> dict[str, float]:
-    cut, heading = limb.at(along), limb.heading(along)
-    near = points[((points - cut) ** 2).sum(axis=1) < AROUND**2]
-    clear = near[away_from(near, stretch_near(parent.xyz, cut)) > radius + CLEAR]
-    beside = away_from(clear, stretch_near(limb.xyz, cut))
-    here = np.linalg.norm(clear - cut, axis=1) < AT_CUT
-    return {
-        "spread": float(beside[here].mean()) if here.any() else AT_CUT,
-        "aside": _aside(clear, beside, cut, heading),
-        "behind": _behind(limb, radius, along, clear),
-    }
-
-
-def _aside(clear: Floats, beside: Floats, cut: Floats, heading: Floats) -> float:
-    """How far from the cut the main axis of the points along the branch passes."""
-    low, high, most = LINE
-    way = (clear - cut) @ heading
-    some = clear[(way > low) & (way < high) & (beside < most)]
-    if len(some) < FEWEST:
-        return NO_LINE
-    middle = some.mean(axis=0)
-    axis = np.linalg.svd(some - middle, full_matrices=False)[2][0]
-    off = cut - middle
-    return float(np.linalg.norm(off - (off @ axis) * axis))
-
-
-def _behind(limb: Limb, radius: float, along: float, clear: Floats) -> float:
-    """The share of the places straight behind the parent that have wood."""
-    foot = limb.at(limb.bark)
-    ahead = _unit(limb.at(along + AT_CUT * 2) - foot)
-    places = foot - (2 * radius + np.arange(*BACK))[:, None] * ahead
-    if len(clear) == 0:
-        return 0.0
-    start, _ = within(np.ascontiguousarray(clear), places, BESIDE)
-    return float((np.diff(start) >= SOME).mean())
 
 
 def _least(values: Floats) -> float:

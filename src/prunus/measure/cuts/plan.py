@@ -14,7 +14,8 @@ from prunus.measure.cuts.confidence import confidence_of
 from prunus.measure.cuts.doubts import doubts_around, doubts_of
 from prunus.measure.cuts.evidence import Evidence, evidence_of
 from prunus.measure.cuts.limbs import Limbs
-from prunus.measure.cuts.reach import Approach, approach, around, blade_normal, samples
+from prunus.measure.cuts.nearby import Nearby, nearby
+from prunus.measure.cuts.reach import Approach, approach, blade_normal, samples
 from prunus.measure.cuts.rules import Demand, Left, verdicts
 from prunus.measure.cuts.settings import CutRules, shipped_rules
 from prunus.measure.refine import Refined
@@ -79,7 +80,8 @@ def plan_cuts(
     said = verdicts(limbs, rules)
     demands = [one for one in said if isinstance(one, Demand)]
     places = np.array([one.limb.at(one.along) for one in demands]).reshape(-1, 3)
-    near = [None] * len(demands) if scan is None else around(scan, places)
+    tips = np.array([one.limb.xyz[-1] for one in demands]).reshape(-1, 3)
+    near = [None] * len(demands) if scan is None else nearby(scan, places, tips)
     cuts = [_cut(limbs, tree, *pair, rules) for pair in zip(demands, near, strict=True)]
     return Plan(tuple(cuts), tuple(one for one in said if isinstance(one, Left)), rules)
 
@@ -91,7 +93,7 @@ def as_it_is(skeleton: Skeleton) -> Refined:
 
 
 def _cut(
-    limbs: Limbs, tree: Refined, demand: Demand, points: Floats | None, rules: CutRules
+    limbs: Limbs, tree: Refined, demand: Demand, points: Nearby | None, rules: CutRules
 ) -> Cut:
     limb, along = demand.limb, demand.along
     point, heading = limb.at(along), limb.heading(along)
@@ -104,9 +106,9 @@ def _cut(
         reasons.append("no cloud: what stands in the way is not known")
     else:
         beyond = samples(tree.skeleton.xyz, tree.skeleton.parent, np.flatnonzero(gone))
-        way = approach(point, heading, points, np.concatenate([point[None], beyond]))
+        way = approach(point, heading, points.cut, np.concatenate([point[None], beyond]))
         normal = blade_normal(heading, np.array(way.direction))
-        reasons += doubts_around(limbs, demand, gone, points, way, rules)
+        reasons += doubts_around(limbs, demand, gone, points.cut, way, rules)
     length, volume = _removed(tree.skeleton, gone, demand)
     return Cut(
         f"{demand.rule}:{limb.name.replace(' ', '-')}", limb.name, demand.rule, demand.because,

@@ -11,11 +11,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from prunus.kernels.neighbours import nearest, within
+from prunus.kernels.neighbours import nearest
+from prunus.measure.cuts.nearby import AROUND
 from prunus.model import Floats, Ints
 from prunus.model.arrays import cubes
 
-FREE = 0.30
+FREE = AROUND
 """A way is looked at from so far away, metres."""
 AT_BLADE = 0.02
 """Points so near to the cut are the wood that is cut, metres."""
@@ -48,14 +49,6 @@ class Approach:
     direction: tuple[float, float, float]
     half_angle: float
     free_within: float
-
-
-def around(scan: Floats, cuts: Floats) -> list[Floats]:
-    """The points of a scan (P, 3) that are near enough to matter to each of some cuts (C, 3)."""
-    if len(cuts) == 0 or len(scan) == 0:
-        return [scan[:0]] * len(cuts)
-    start, members = within(np.ascontiguousarray(scan), cuts, FREE)
-    return [scan[members[low:high]] for low, high in pairwise(start)]
 
 
 def ways() -> Floats:

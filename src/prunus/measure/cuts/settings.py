@@ -64,6 +64,7 @@ class Review(_Group):
     path: float = Field(ge=0, le=1)
     edge: float = Field(ge=0, le=1)
     behind: float = Field(ge=0, le=1)
+    past: float = Field(ge=0)
     level: float = Field(ge=0, le=90)
     near_limit: float = Field(ge=0, le=1)
     other_wood: float = Field(ge=0, le=1)
