@@ -9,7 +9,17 @@ HOME = Path(prunus.__file__).parent
 FLOORS = [
     {"cli"},
     {"studio"},
-    {"progress", "demo", "convert", "fusing", "batch", "experiment", "isolation", "judge"},
+    {
+        "progress",
+        "demo",
+        "convert",
+        "cutting",
+        "fusing",
+        "batch",
+        "experiment",
+        "isolation",
+        "judge",
+    },
     {"report", "evaluate", "simulate", "learn", "corrections"},
     {"pipeline", "graphs", "intake"},
     {"sensing", "search", "stages", "measure", "io"},

@@ -21,6 +21,7 @@ from prunus.io.skeletons import write_skeleton
 from prunus.io.tables import csv_bytes, parquet_bytes, without_nan
 from prunus.kernels.compiled import is_compiled, mark_compiled
 from prunus.measure import branches
+from prunus.measure.cuts import plan_cuts
 from prunus.measure.defined import BRANCH_TRAITS, TREE_TRAITS
 from prunus.measure.refine import Refined
 from prunus.measure.traits import branch_traits, tree_traits
@@ -158,7 +159,8 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
     if folder.exists() and not folder.is_dir():
         raise PrunusError(f"{folder}: is a file; expected a folder to write to")
     if report:
-        page = report_page(result, scan.file.name, [*scan.notes, *result.notes])
+        plan = plan_cuts(result.refined, result.scan.xyz)
+        page = report_page(result, scan.file.name, [*scan.notes, *result.notes], plan)
         write_bytes(folder / "report.html", page.encode())
     skeleton = result.skeleton.with_radius(result.refined.radius_at(result.skeleton.superpoint))
     write_swc(folder / "skeleton.swc", skeleton)

@@ -455,12 +455,63 @@ def fuse(
 
 
 @app.command()
+def cuts(
+    source: Annotated[Path, typer.Argument(help="A skeleton (.json, .swc) or a point cloud.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Plan to write, as .json.")
+    ] = None,
+    rules: Annotated[
+        Path | None, typer.Option(help="Rules as TOML, where they differ from ours.")
+    ] = None,
+    base: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(help="Of a cloud: where the trunk meets the ground, in the file's frame."),
+    ] = None,
+    frame: Annotated[
+        Frame, typer.Option(help="Frame of the file; auto goes by the evidence in the cloud.")
+    ] = Frame.AUTO,
+    unit: Annotated[
+        Unit | None, typer.Option(help="Unit of the cloud. [default: m, checked]")
+    ] = None,
+    scans: Annotated[
+        Path | None, typer.Option(help="Where the scan of a skeleton lies. [default: looked for]")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="The plan as one line of JSON.")] = False,
+) -> None:
+    """Plan pruning cuts by rules: where the blade goes, how a tool comes to it, and what is unsure.
+
+    From a scan: `prunus cuts tree.ply -o plan.json`
+
+    From a skeleton, corrected or not, by rules of your own: `prunus cuts out/skeleton.json --rules
+    mine.toml`
+
+    docs/cuts.md has the rules. A cut with a `look:` is for a person to look at before it is made.
+    """
+    from prunus.cutting import Source, cut_file, lines_of
+    from prunus.io.plans import write_plan
+    from prunus.measure.cuts import CutRules, shipped_rules
+
+    try:
+        wanted = shipped_rules() if rules is None else CutRules.from_toml(rules)
+        plan = cut_file(Source(source, base, frame.value, unit and unit.value, scans), wanted)
+        if output is not None:
+            write_plan(output, plan)
+    except PrunusError as error:
+        _stop(error)
+    for line in [plan.model_dump_json()] if json else lines_of(plan):
+        typer.echo(line)
+
+
+@app.command()
 def convert(
     source: Annotated[Path, typer.Argument(help="A skeleton (.json, .swc) or a point cloud.")],
     target: Annotated[Path, typer.Argument(help="What to write; the ending says which kind.")],
     unit: Annotated[Unit | None, typer.Option(help="Unit of a cloud. [default: m]")] = None,
     cloud: Annotated[
         Path | None, typer.Option(help="The cloud, to go into a bag (.mcap) with the tree.")
+    ] = None,
+    cuts: Annotated[
+        Path | None, typer.Option(help="A plan (see `prunus cuts`), to go into the bag as poses.")
     ] = None,
 ) -> None:
     """Convert skeletons and clouds to what others read; says what a kind of file cannot hold.
@@ -470,14 +521,15 @@ def convert(
 
     For Blender, thick as it is: `prunus convert out/refined.json tree.glb`
 
-    For RViz or Foxglove: `prunus convert out/refined.json tree.mcap --cloud tree.ply`
+    For RViz or Foxglove: `prunus convert out/refined.json tree.mcap --cloud tree.ply --cuts
+    plan.json`
 
     A cloud for another tool: `prunus convert tree.laz tree.xyz`
     """
     from prunus.convert import convert_file
 
     try:
-        notes = convert_file(source, target, unit and unit.value, cloud)
+        notes = convert_file(source, target, unit and unit.value, cloud, cuts)
     except PrunusError as error:
         _stop(error)
     for note in notes:

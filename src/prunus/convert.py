@@ -15,7 +15,8 @@ from prunus.io.export import write_graphml, write_ply, write_swc
 from prunus.io.gltf import write_gltf
 from prunus.io.mtg import write_mtg
 from prunus.io.obj import write_obj
-from prunus.io.ros import write_mcap
+from prunus.io.plans import read_plan
+from prunus.io.ros import facing, write_mcap
 from prunus.io.skeletons import read_record, read_skeleton, write_skeleton
 from prunus.io.treetext import write_treetext
 from prunus.model import Floats, Skeleton
@@ -57,19 +58,25 @@ FORMATS: dict[str, Format] = {
 
 
 def convert_file(
-    source: Path, target: Path, unit: str | None = None, cloud: Path | None = None
+    source: Path,
+    target: Path,
+    unit: str | None = None,
+    cloud: Path | None = None,
+    cuts: Path | None = None,
 ) -> list[str]:
     """Convert a skeleton or a cloud; returns notes on what the target cannot hold.
 
-    `cloud` goes into a bag beside the tree. PrunusError where source or target is of no such kind.
+    `cloud` and `cuts`, a pruning plan, go into a bag beside the tree. PrunusError where source or
+    target is of no such kind.
     """
     if source.suffix.lower() not in (".json", ".swc"):
         held = read_cloud(source, unit)
         write_cloud(target, held.xyz, held.rgb)
         return []
     kind = kind_of(target)
-    if cloud is not None and kind != ".mcap":
-        raise PrunusError(f"{target}: holds no cloud; expected a bag (.mcap)")
+    for name, path in (("cloud", cloud), ("cuts", cuts)):
+        if path is not None and kind != ".mcap":
+            raise PrunusError(f"{target}: holds no {name}; expected a bag (.mcap)")
     if kind == ".json" == source.suffix.lower():
         skeleton, record = read_record(source)
         evidence = {"score", "input", "params", "seed", "version_of_prunus"}
@@ -81,13 +88,28 @@ def convert_file(
         raise PrunusError(f"{source}: holds a base alone; expected at least one edge")
     if "radius" in needs:
         skeleton = skeleton.with_radius(np.nan_to_num(skeleton.radius, nan=THIN))
+    if kind != ".mcap":
+        FORMATS[kind].write(target, skeleton)
+        return notes
+    points = None
     if cloud is not None:
         held = read_cloud(cloud, unit)
-        write_mcap(target, skeleton, (held.xyz, held.rgb))
+        points = held.xyz, held.rgb
         notes += _rounding(held.xyz)
-    else:
-        FORMATS[kind].write(target, skeleton)
+    write_mcap(target, skeleton, points, None if cuts is None else _poses(cuts))
     return notes
+
+
+def _poses(plan: Path) -> tuple[Floats, Floats]:
+    """Places (C, 3) and orientations (C, 4) of the cuts in a plan: Z the blade's normal, X the way.
+
+    Where no way is known, X lies anywhere.
+    """
+    cuts = read_plan(plan).cuts
+    places = np.array([cut.point for cut in cuts]).reshape(-1, 3)
+    normal = np.array([cut.blade_normal for cut in cuts]).reshape(-1, 3)
+    way = np.array([cut.approach.direction if cut.approach else (0, 0, 0) for cut in cuts])
+    return places, facing(normal, way.reshape(-1, 3))
 
 
 def kind_of(target: Path) -> str:

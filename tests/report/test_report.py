@@ -2,12 +2,15 @@
 
 import json
 import re
+from html import escape
 from pathlib import Path
 
 import pytest
 
+from prunus.measure.cuts import Plan, plan_cuts
 from prunus.pipeline import Result, skeletonize
 from prunus.report import report_page
+from prunus.report.cuts import cut_traces
 from tests.conftest import simulated
 
 
@@ -54,3 +57,15 @@ def test_tables_hold_leaders_times_and_parameters(page: str, found: Result) -> N
 
 def test_a_page_is_a_few_megabytes(page: str, tmp_path: Path) -> None:
     assert 3e6 < len(page) < 9e6
+
+
+def test_a_plan_has_its_blades_in_the_scene_and_a_table(found: Result) -> None:
+    plan = plan_cuts(found.refined, found.scan.xyz)
+    page = report_page(found, "tree.ply", plan=plan)
+    traces = cut_traces(plan)
+    blades = [trace for trace in traces if trace["type"] == "mesh3d"][:-1]
+    assert sum(len(trace["x"]) for trace in blades) == 21 * len(plan.cuts)
+    assert all(max(trace["k"]) < len(trace["x"]) for trace in blades)
+    assert all(f"<td>{cut.branch}</td>" in page for cut in plan.cuts)
+    assert all(escape(f"{one.branch}: {one.why}") in page for one in plan.left)
+    assert cut_traces(Plan((), (), plan.rules)) == []

@@ -20,8 +20,9 @@ from prunus.corrections.draft import Draft
 from prunus.corrections.refused import Repairs
 from prunus.corrections.settle import Allowed, settled
 from prunus.corrections.steps import Stepped, stepped
-from prunus.corrections.words import NOUNS, a_branch, branch_names, listed
+from prunus.corrections.words import a_branch, branch_names, listed
 from prunus.errors import PrunusError
+from prunus.measure.names import NOUNS
 from prunus.model import Label, SeededGraph
 from prunus.rules import offenders
 

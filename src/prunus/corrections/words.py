@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from prunus.corrections.draft import Draft
 from prunus.measure import branches
+from prunus.measure.names import NOUNS
+from prunus.measure.names import branch_names as names_of_branches
 from prunus.model import Label
 
-NOUNS = {label: label.word.replace("_", " ") for label in Label}
-"""Labels as words."""
 RULES = {
     "label_progression": "along a branch the order trunk, support, leader, side branch never falls",
     "label_linearity": "a branch goes on as one, it does not fork into two of its label",
@@ -34,14 +34,10 @@ def branch_names(draft: Draft) -> dict[int, str]:
     Branches of one label are numbered along the row as `measure.leaders` numbers leaders.
     """
     skeleton = draft.numbered()
+    found = branches(skeleton)
     names = {draft.base: "the base"}
-    for label in Label:
-        found = branches(skeleton, label)
-        found.sort(key=lambda b: (float(skeleton.xyz[b.rows, 0].mean()), int(b.rows[-1])))
-        for number, branch in enumerate(found, 1):
-            alone = label == Label.TRUNK and len(found) == 1
-            name = "the trunk" if alone else f"{NOUNS[label]} {number}"
-            names |= {draft.nodes[row]: name for row in branch.rows[1:].tolist()}
+    for branch, name in zip(found, names_of_branches(skeleton, found), strict=True):
+        names |= {draft.nodes[row]: name for row in branch.rows[1:].tolist()}
     return names
 
 

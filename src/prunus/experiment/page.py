@@ -13,7 +13,7 @@ from prunus.experiment.trial import ABLATIONS, BY_HAND, WAYS, Record
 from prunus.io.tables import csv_bytes
 from prunus.learn.tables import PAPER
 from prunus.model import Label
-from prunus.report.page import html_table
+from prunus.report.tables import html_table
 
 IN_PAPER: dict[str, str] = {
     "edit ratio, median": "0.30",

@@ -28,6 +28,19 @@ def within(points: Floats, centers: Floats, radius: float) -> list[list[int]]:
     ]
 
 
+def away_from(points: Floats, line: Floats) -> list[float]:
+    """The distance of each point from the nearest of the stretches between nodes."""
+    pieces = list(pairwise(line)) or [(line[0], line[0])]
+    return [min(_from_stretch(point, *piece) for piece in pieces) for point in points]
+
+
+def _from_stretch(point: Floats, start: Floats, end: Floats) -> float:
+    step = end - start
+    square = float(step @ step)
+    share = min(max(float((point - start) @ step) / square, 0.0), 1.0) if square else 0.0
+    return float(np.linalg.norm(start + share * step - point))
+
+
 def cover(points: Floats, order: Iterable[int], radius: float) -> tuple[Floats, Ints]:
     """Means and sizes of balls around uncovered points, met in order."""
     covered: set[int] = set()

@@ -14,9 +14,12 @@ import numpy as np
 
 from prunus.io.export import COLOURS
 from prunus.measure import branches, leaders, lengths_by_label
+from prunus.measure.cuts import Plan
 from prunus.model import Label
 from prunus.pipeline import Result
+from prunus.report.cuts import cut_traces, cuts_section
 from prunus.report.scene import left_out_traces, scene_traces
+from prunus.report.tables import html_table
 
 STYLE = """
 body{font:15px/1.45 system-ui,sans-serif;color:#222;margin:0 auto;max-width:1500px;padding:16px 24px}
@@ -28,6 +31,7 @@ table{border-collapse:collapse;width:100%}td,th{padding:2px 8px;text-align:right
 th{color:#666;border-bottom:1px solid #ccc}td:first-child,th:first-child{text-align:left;padding-left:0}
 .dot{display:inline-block;width:11px;height:11px;border-radius:6px;margin-right:7px}
 .warn{background:#fff4d6;border-left:4px solid #e69f00;padding:6px 12px;margin:6px 0}
+.cuts td{text-align:left;vertical-align:top}.cuts th{text-align:left}
 .quiet{color:#666;font-size:13px}pre{font-size:12px;overflow:auto;background:#f6f6f6;padding:8px}
 """
 
@@ -57,10 +61,17 @@ SCORE_LAYOUT = {
 }
 
 
-def report_page(result: Result, title: str, notes: Iterable[str] = ()) -> str:
-    """The report of one tree as HTML that holds all it needs; `notes` tell how it was read."""
+def report_page(
+    result: Result, title: str, notes: Iterable[str] = (), plan: Plan | None = None
+) -> str:
+    """The report of one tree as HTML that holds all it needs; `notes` tell how it was read.
+
+    `plan` is its pruning plan, in the house frame.
+    """
     library = _plotly_library()
     traces = scene_traces(result.in_house, result.graph)
+    if plan is not None:
+        traces += cut_traces(plan)
     if result.isolated is not None:
         traces += left_out_traces(result.scan, result.isolated.kind)
     layout = LAYOUT | {"scene": LAYOUT["scene"] | _frame_of(result)}
@@ -74,7 +85,8 @@ def report_page(result: Result, title: str, notes: Iterable[str] = ()) -> str:
 <p class="quiet">Drag turns, wheel zooms. Click a name in the list to show or hide it.
 House frame: X along the row, Y depth, Z up, metres, around the middle of the cloud; the files
 beside this page are in the frame of the input.</p>
-{"".join(f'<p class="quiet">{escape(note)}</p>' for note in notes)}</div>
+{"".join(f'<p class="quiet">{escape(note)}</p>' for note in notes)}
+{"" if plan is None else cuts_section(plan)}</div>
 <div>{_labels(result)}{_leaders(result)}
 <h2>Score by iteration</h2><div id="score"></div>{_seconds(result)}
 <details><summary class="quiet">parameters, seed {result.seed}</summary>
@@ -155,10 +167,3 @@ def _seconds(result: Result) -> str:
     ]
     note = '<p class="quiet">The first tree of a run also loads the compiled kernels.</p>'
     return "<h2>Time by stage</h2>" + html_table(["stage", "CPU [ms]", "wall [ms]"], rows) + note
-
-
-def html_table(names: list[str], rows: list[list[str]]) -> str:
-    """A table as HTML; the cells may hold markup."""
-    head = "".join(f"<th>{name}</th>" for name in names)
-    body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
-    return f"<table><tr>{head}</tr>{body}</table>"

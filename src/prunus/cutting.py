@@ -1,0 +1,180 @@
+"""`prunus cuts`: from a skeleton or a cloud to a pruning plan, in the frame of the file."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from prunus import __version__
+from prunus.errors import PrunusError
+from prunus.intake import Scan, open_scan
+from prunus.io.original import original_of
+from prunus.io.plans import PlanFile
+from prunus.io.skeletons import InputRecord, read_record, read_skeleton
+from prunus.kernels.neighbours import within
+from prunus.measure.cuts import Cut, CutRules, Plan, plan_cuts
+from prunus.measure.cuts.plan import as_it_is
+from prunus.measure.cuts.reach import samples
+from prunus.measure.refine import Refined, refined
+from prunus.model import FRAMES, Floats, Label, PointCloud, RigidMotion, Skeleton
+from prunus.pipeline import REFINED_WITH, skeletonize
+
+SKELETONS = (".json", ".swc")
+OWN = 0.06
+"""Points of a scan so near to a skeleton are taken for those of its tree, metres."""
+FINE = 0.02
+"""A skeleton with nodes so near to each other was refined already, metres."""
+SEEN = 0.02
+"""Its nodes are seen where a point is so near, metres."""
+Place = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Source:
+    """What is planned on, how a cloud is read, and where scans are looked for."""
+
+    path: Path
+    base: Place | None = None
+    frame: str = "auto"
+    unit: str | None = None
+    scans: Path | None = None
+
+
+def cut_file(source: Source, rules: CutRules) -> PlanFile:
+    """The plan for a skeleton, or for a cloud, which is skeletonized first.
+
+    The cloud of a skeleton is looked for (see `io.original`); without it the skeleton is planned on
+    as it is, and every cut needs review. Raises PrunusError as the readers do.
+    """
+    if source.path.suffix.lower() in SKELETONS:
+        return _on_skeleton(source, rules)
+    scan = open_scan(source.path, source.frame, source.unit)
+    result = skeletonize(scan.cloud, source.base)
+    plan = plan_cuts(result.refined, scan.cloud.xyz, rules)
+    notes = [*scan.notes, *result.notes, *result.warnings]
+    return plan_file(plan, scan.cloud.to_input, input=scan.record, notes=notes)
+
+
+def _on_skeleton(source: Source, rules: CutRules) -> PlanFile:
+    path, notes = source.path, list[str]()
+    skeleton, record = read_skeleton(path), None
+    if path.suffix.lower() == ".json":
+        record = read_record(path)[1].input
+    scan = None
+    try:
+        scan = _scan_of(source, record)
+    except PrunusError as error:
+        if source.scans is not None:
+            raise
+        notes.append(f"no cloud: {error}")
+    if scan is None:
+        to_file = RigidMotion(_upright(skeleton, source.frame), np.zeros(3)).inverse()
+        plan = plan_cuts(skeleton.moved(to_file.inverse()), None, rules)
+        return plan_file(plan, to_file, skeleton=path.name, notes=notes)
+    cloud = scan.cloud
+    in_house = skeleton.moved(cloud.to_input.inverse())
+    plan = plan_cuts(_refined(in_house, cloud), cloud.xyz, rules)
+    notes += scan.notes
+    return plan_file(plan, cloud.to_input, skeleton=path.name, input=scan.record, notes=notes)
+
+
+def _scan_of(source: Source, record: InputRecord | None) -> Scan:
+    if record is None:
+        raise PrunusError(f"{source.path}: does not say of which cloud it is")
+    found = original_of(record, source.path.parent, source.scans)
+    return open_scan(found, source.frame, source.unit)
+
+
+def _refined(skeleton: Skeleton, cloud: PointCloud) -> Refined:
+    """A skeleton refined with the points near it, both in the house frame; a fine one as it is."""
+    if len(skeleton) > 1 and np.median(skeleton.lengths[1:]) < FINE:
+        seen = np.diff(within(cloud.xyz, skeleton.xyz, SEEN)[0]) > 0
+        return replace(as_it_is(skeleton), radius_error=np.full(len(seen), np.nan), seen=seen)
+    return refined(skeleton, _own(cloud, skeleton))
+
+
+def _own(cloud: PointCloud, skeleton: Skeleton) -> PointCloud:
+    """The points of a cloud that are near a skeleton, both in the house frame."""
+    line = samples(skeleton.xyz, skeleton.parent, np.arange(1, len(skeleton)))
+    _, members = within(cloud.xyz, line, OWN)
+    own = cloud.take(np.unique(members)) if len(members) else cloud
+    return own.sample(REFINED_WITH, np.random.default_rng(0))
+
+
+def _upright(skeleton: Skeleton, frame: str) -> Floats:
+    """The rotation (3, 3) into the house frame: as asked, else such that leaders point up."""
+    if frame != "auto":
+        return FRAMES[frame]
+    leaders = skeleton.edges_with(Label.LEADER)
+    ways = skeleton.edge_vectors[leaders if leaders.any() else slice(None)]
+    up = {name: float((ways @ turn.T)[:, 2].sum()) for name, turn in FRAMES.items()}
+    return FRAMES[max(up, key=lambda name: up[name])]
+
+
+def plan_file(plan: Plan, to_file: RigidMotion, **evidence: Any) -> PlanFile:
+    """A plan in the house frame as a file has it; `evidence`: skeleton, input, notes."""
+    return PlanFile.model_validate(
+        {
+            "cuts": [_record(cut, to_file) for cut in plan.cuts],
+            "left": [vars(one) for one in plan.left],
+            "rules": plan.rules.model_dump(),
+            "version_of_prunus": __version__,
+            **evidence,
+        }
+    )
+
+
+def _record(cut: Cut, to_file: RigidMotion) -> dict[str, Any]:
+    way = cut.approach
+    return {
+        "id": cut.id,
+        "branch": cut.branch,
+        "rule": cut.rule,
+        "because": cut.because,
+        "point": _rounded(to_file.apply(cut.point), 5),
+        "blade_normal": _rounded(to_file.rotation @ cut.blade_normal, 6),
+        "branch_direction": _rounded(to_file.rotation @ cut.branch_direction, 6),
+        "approach": way and {
+            "direction": _rounded(to_file.rotation @ way.direction, 6),
+            "half_angle_deg": round(way.half_angle, 1),
+            "free_within_m": round(way.free_within, 3),
+        },
+        "diameter": _known(cut.diameter, 5),
+        "diameter_error": _known(cut.diameter_error, 5),
+        "stub_length": _known(cut.stub, 4),
+        "wood_removed": {
+            "length": round(cut.removed_length, 4),
+            "volume": _known(cut.removed_volume, 8),
+        },
+        "confidence": round(cut.confidence, 4),
+        "needs_review": cut.needs_review,
+        "reasons": list(cut.reasons),
+    }  # fmt: skip
+
+
+def _rounded(values: Floats, digits: int) -> list[float]:
+    return [round(value, digits) + 0.0 for value in values.tolist()]
+
+
+def _known(value: float, digits: int) -> float | None:
+    return round(value, digits) if math.isfinite(value) else None
+
+
+def lines_of(plan: PlanFile) -> list[str]:
+    """What the command line says of a plan."""
+    lines = [line for cut in plan.cuts for line in _told(cut.model_dump())]
+    looked = sum(cut.needs_review for cut in plan.cuts)
+    lines.append(f"{len(plan.cuts)} cuts, {looked} of them for a person to look at first")
+    lines += [f"  {one.rule}: {one.branch} stays: {one.why}" for one in plan.left]
+    return lines + [f"  {note}" for note in plan.notes]
+
+
+def _told(cut: dict[str, Any]) -> list[str]:
+    thick = "" if cut["diameter"] is None else f", {1e3 * cut['diameter']:.0f} mm thick"
+    place = ", ".join(f"{value:.3f}" for value in cut["point"])
+    first = f"{cut['id']} at ({place}){thick}: {cut['because']}"
+    return [first, *(f"  look: {reason}" for reason in cut["reasons"])]
