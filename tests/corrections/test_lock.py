@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from prunus.corrections.lock import NAME, Holder, acquire, release
+from prunus.corrections.lock import GUARD, NAME, Holder, acquire, release
 
 
 @pytest.fixture
@@ -84,8 +84,9 @@ def test_a_lock_that_names_nobody_is_taken_over(tmp_path: Path, text: str) -> No
 
 
 def test_of_many_at_once_one_gets_it(tmp_path: Path) -> None:
-    write(tmp_path, born="1")
-    with ThreadPoolExecutor(8) as pool:
-        came = list(pool.map(lambda _: acquire(tmp_path), range(16)))
-    assert sum(holder is None for holder in came) == 1
-    assert [path.name for path in tmp_path.iterdir()] == [NAME]
+    for stale in range(20):
+        write(tmp_path, born=str(stale))
+        with ThreadPoolExecutor(8) as pool:
+            came = list(pool.map(lambda _: acquire(tmp_path), range(16)))
+        assert sum(holder is None for holder in came) == 1
+    assert {path.name for path in tmp_path.iterdir()} == {NAME, GUARD}

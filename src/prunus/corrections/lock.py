@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import contextlib
-import errno
 import getpass
 import json
 import os
 import socket
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from filelock import FileLock
+
 from prunus.errors import PrunusError
+from prunus.io.safely import remove, write_bytes
 
 NAME = "lock.json"
+GUARD = ".lock.guard"
+"""Stays in the folder: whoever removes it would part those who wait for it."""
+PATIENCE = 5.0
+"""Nobody keeps the guard so long, seconds."""
 
 
 @dataclass(frozen=True)
@@ -61,79 +68,40 @@ def acquire(folder: Path) -> Holder | None:
     PrunusError where the folder cannot be written.
     """
     path = folder / NAME
-    for _ in range(TRIES):
-        if _created(path):
-            return None
-        held = _read(path)
-        if held is None:
-            continue
-        holder = _holder(held)
+    with _alone(folder):
+        holder = _holder(_read(path))
         if holder is not None and not holder.is_gone:
             return holder
-        _clear(path, held)
-    raise PrunusError(f"{path}: others open and close this tree all the time; try again")
-
-
-TRIES = 20
-"""Whoever finds the lock changing hands tries again so often."""
+        write_bytes(path, (json.dumps(asdict(Holder.me())) + "\n").encode())
+    return None
 
 
 def release(folder: Path) -> None:
     """Give the lock back, where this process has it."""
     path = folder / NAME
-    holder = _holder(_read(path) or b"")
-    if holder is not None and (holder.pid, holder.host) == (os.getpid(), socket.gethostname()):
-        with contextlib.suppress(OSError):
-            path.unlink()
+    with contextlib.suppress(PrunusError), _alone(folder):
+        holder = _holder(_read(path))
+        if holder is not None and (holder.pid, holder.host) == (os.getpid(), socket.gethostname()):
+            remove(path)
 
 
-def _created(path: Path) -> bool:
-    """Write the lock in one go, if there is none: a half-written one is never seen."""
-    temporary = path.with_name(f".{NAME}.{os.getpid()}.{os.urandom(4).hex()}")
+@contextlib.contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Keep all others from the lock while it is looked at and changed: milliseconds."""
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(asdict(Holder.me())) + "\n"
-        temporary.write_text(text, encoding="utf-8")
-        _link(temporary, path, text)
-    except FileExistsError:
-        return False
+        folder.mkdir(parents=True, exist_ok=True)
+        with FileLock(folder / GUARD, timeout=PATIENCE):
+            yield
     except OSError as error:
-        raise PrunusError(f"{path}: cannot be written ({error.strerror})") from error
-    finally:
-        with contextlib.suppress(OSError):
-            temporary.unlink()
-    return True
+        raise PrunusError(f"{folder}: cannot be locked ({error.strerror or error})") from error
 
 
-def _link(temporary: Path, path: Path, text: str) -> None:
-    """Give a file a second name that must be free, or write it where a disk knows no such names."""
-    try:
-        os.link(temporary, path)
-    except FileExistsError:
-        raise
-    except OSError as error:
-        if error.errno not in (errno.EPERM, errno.ENOTSUP, errno.ENOSYS):
-            raise
-        with path.open("x", encoding="utf-8") as file:
-            file.write(text)
-
-
-def _clear(path: Path, stale: bytes) -> None:
-    """Take a stale lock away; one that came in its place meanwhile is put back."""
-    aside = path.with_name(f".{NAME}.{os.urandom(4).hex()}")
-    with contextlib.suppress(OSError):
-        path.rename(aside)
-        if _read(aside) != stale:
-            os.link(aside, path)
-    with contextlib.suppress(OSError):
-        aside.unlink()
-
-
-def _read(path: Path) -> bytes | None:
+def _read(path: Path) -> bytes:
+    """What a lock holds; nothing where there is none."""
     try:
         return path.read_bytes()
     except FileNotFoundError:
-        return None
+        return b""
     except OSError as error:
         raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
 
