@@ -126,7 +126,7 @@ def test_json_prints_one_line_a_tree_and_nothing_else(
     good, failed = records["tree.ply"], records["bad.xyz"]
     assert set(good) == set(failed) == {
         "file", "ok", "error", "skeleton", "score", "points", "superpoints", "edges", "tips",
-        "labels", "leaders", "side_branches", "cpu_s", "wall_s", "warnings",
+        "labels", "leaders", "side_branches", "trust", "review", "cpu_s", "wall_s", "warnings",
     }  # fmt: skip
     assert good["ok"] and good["error"] is None
     assert good["cpu_s"]["total"] == pytest.approx(

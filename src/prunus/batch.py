@@ -17,15 +17,16 @@ from prunus.intake import Scan, open_scan
 from prunus.io.export import write_ply, write_swc
 from prunus.io.inputs import clouds_in, is_one, names_of
 from prunus.io.safely import write_bytes
-from prunus.io.skeletons import write_skeleton
+from prunus.io.skeletons import TrustRecord, write_skeleton
 from prunus.io.tables import csv_bytes, parquet_bytes, without_nan
 from prunus.kernels.compiled import is_compiled, mark_compiled
 from prunus.measure import branches
 from prunus.measure.cuts import plan_cuts
 from prunus.measure.defined import BRANCH_TRAITS, TREE_TRAITS
-from prunus.measure.refine import Refined
+from prunus.measure.names import branch_names
 from prunus.measure.traits import branch_traits, tree_traits
-from prunus.model import Label
+from prunus.measure.trust import Trust
+from prunus.model import Floats, Label, Skeleton
 from prunus.params import Parameters
 from prunus.pipeline import Result, skeletonize
 from prunus.report import report_page
@@ -133,12 +134,16 @@ def do(task: Task, options: Options) -> Record:
     cpu, wall = time.process_time(), time.perf_counter()
     _ = result.refined
     refining = (time.process_time() - cpu, time.perf_counter() - wall)
+    cpu, wall = time.process_time(), time.perf_counter()
+    _ = result.review
+    trusting = (time.process_time() - cpu, time.perf_counter() - wall)
     mark_compiled()
     cpu, wall = time.process_time(), time.perf_counter()
     write_outputs(task.folder, result, scan, options.report)
-    notes = write_traits(task.folder, result.refined, scan.file.name) if options.traits else []
+    notes = write_traits(task.folder, result, scan.file.name) if options.traits else []
     writing = (time.process_time() - cpu, time.perf_counter() - wall)
-    seconds = {"read": reading, **result.seconds, "refine": refining, "write": writing}
+    seconds = {"read": reading, **result.seconds, "refine": refining, "trust": trusting}
+    seconds["write"] = writing
     return _record(task, result, scan, seconds, notes)
 
 
@@ -174,22 +179,51 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
         "version_of_prunus": __version__,
     }
     fine = result.refined.skeleton.moved(result.graph.superpoints.cloud.to_input)
-    write_skeleton(folder / "skeleton.json", skeleton, **evidence)
+    trust = trust_record(result.in_house, result.trust)
+    write_skeleton(
+        folder / "skeleton.json", skeleton, trust=trust, review=result.review, **evidence
+    )
     write_skeleton(folder / "refined.json", fine, **evidence)
 
 
-def write_traits(folder: Path, tree: Refined, name: str) -> list[str]:
+def trust_record(skeleton: Skeleton, trust: Trust | None) -> TrustRecord | None:
+    """The trust in a skeleton, house frame, as `skeleton.json` has it."""
+    if trust is None:
+        return None
+    found = branches(skeleton)
+    names = branch_names(skeleton, found)
+    rows = [
+        {"name": name, "label": one.label.word, "nodes": one.rows.tolist(), "trust": likely}
+        for name, one, likely in zip(names, found, _rounded(trust.branch), strict=True)
+    ]
+    edges = [None, *_rounded(trust.edge[1:])]
+    return TrustRecord.model_validate(
+        {"tree": round(trust.tree, DIGITS), "edges": edges, "branches": rows}
+    )
+
+
+DIGITS = 4
+"""A probability is written with so many."""
+
+
+def _rounded(values: Floats) -> list[float]:
+    return [round(value, DIGITS) for value in values.tolist()]
+
+
+def write_traits(folder: Path, result: Result, name: str) -> list[str]:
     """traits.csv, a row a branch, and tree_traits.csv, one row; the same as Parquet.
 
     Without pyarrow there is no Parquet; the lines returned say so.
     """
+    tree = result.refined
+    rows = branch_traits(tree, result.trust)
     tables = {
-        "traits": ([{"tree": name, **row} for row in branch_traits(tree)], BRANCH_TRAITS),
-        "tree_traits": ([{"tree": name, **tree_traits(tree)}], TREE_TRAITS),
+        "traits": ([{"tree": name, **row} for row in rows], BRANCH_TRAITS),
+        "tree_traits": ([{"tree": name, **tree_traits(tree, result.trust)}], TREE_TRAITS),
     }
     notes = []
-    for stem, (rows, defined) in tables.items():
-        records = [without_nan(row) for row in rows]
+    for stem, (table, defined) in tables.items():
+        records = [without_nan(row) for row in table]
         columns = {"tree": str, **{trait: defined[trait].kind for trait in defined}}
         write_bytes(folder / f"{stem}.csv", csv_bytes(records, list(columns)))
         try:
@@ -226,6 +260,8 @@ def _record(
         "side_branches": len(branches(skeleton, Label.SIDE_BRANCH)),
         "cpu_s": columns[0],
         "wall_s": columns[1],
+        "trust": None if result.trust is None else round(result.trust.tree, DIGITS),
+        "review": result.review,
         "warnings": [*scan.notes, *result.notes, *result.warnings, *notes],
     }
 
@@ -247,5 +283,7 @@ def failure(path: Path, text: str) -> Record:
         "side_branches": None,
         "cpu_s": None,
         "wall_s": None,
+        "trust": None,
+        "review": [],
         "warnings": [],
     }

@@ -55,7 +55,7 @@ def cut_file(source: Source, rules: CutRules) -> PlanFile:
     scan = open_scan(source.path, source.frame, source.unit)
     result = skeletonize(scan.cloud, source.base)
     plan = plan_cuts(result.refined, scan.cloud.xyz, rules)
-    notes = [*scan.notes, *result.notes, *result.warnings]
+    notes = [*scan.notes, *result.notes, *result.review]
     return plan_file(plan, scan.cloud.to_input, input=scan.record, notes=notes)
 
 

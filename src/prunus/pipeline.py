@@ -14,9 +14,12 @@ from numpy.typing import ArrayLike
 from prunus.errors import PrunusError
 from prunus.measure import remarks
 from prunus.measure.refine import Refined, refined
+from prunus.measure.trust import Known, Trust, trust_in
+from prunus.measure.trust.review import review_of
 from prunus.model import Floats, PointCloud, ScoredGraph, SeededGraph, Skeleton
 from prunus.params import Parameters
 from prunus.search import SearchResult, search, search_learned, shipped_score, skel_score
+from prunus.search.judged import judged
 from prunus.sensing.isolate import Isolated, Scene, isolate, judged_graph
 from prunus.sensing.trunks import find_foot
 from prunus.stages.candidates import find_candidates
@@ -71,6 +74,27 @@ class Result:
         """The skeleton refitted to these points, in the house frame; made when first asked for."""
         points = self.tree_cloud.sample(REFINED_WITH, np.random.default_rng(self.seed))
         return refined(self.in_house, points)
+
+    @cached_property
+    def trust(self) -> Trust | None:
+        """How far to trust it; None where it was not found by the learned score."""
+        if len(self.in_house) == 1 or not goes_by_learned_score(self.graph, self.params):
+            return None
+        told = judged(self.in_house, self.graph, shipped_score())
+        return trust_in(Known(self.in_house, self.refined, told.gain, told.likely))
+
+    @cached_property
+    def review(self) -> list[str]:
+        """Why a person should look at the tree before a machine acts on it; empty: no need."""
+        doubts = [] if self.trust is None else review_of(self.in_house, self.trust)
+        return [*self._other_tree(), *self.warnings, *doubts]
+
+    def _other_tree(self) -> list[str]:
+        rival = None if self.isolated is None else self.isolated.rival
+        if rival is None:
+            return []
+        place = ", ".join(f"{value:.2f}" for value in self.scan.to_input.apply(rival))
+        return [f"the tree that stands at ({place}) could be meant as well"]
 
 
 def skeletonize(
@@ -161,7 +185,9 @@ def _isolated(
         return None
     some = isolate(drawn, at)
     raw = some.removed >= params.isolation.raw_from and some.target.mean() >= LEAST_LEFT
-    return drawn.over(cloud).tree_at(some.base) if raw or wanted == "always" else None
+    if not raw and wanted != "always":
+        return None
+    return replace(drawn.over(cloud).tree_at(some.base), rival=some.rival)
 
 
 LEAST_LEFT = 0.02

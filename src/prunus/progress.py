@@ -93,6 +93,8 @@ class Teller:
             f"{record['file']}: leaders {record['leaders']}, side branches "
             f"{record['side_branches']} (edges: {edges}) in {record['cpu_s']['total']:.2f} s of CPU"
         )
-        for warning in record["warnings"]:
+        for warning in dict.fromkeys([*record["warnings"], *record["review"]]):
             typer.echo(f"  {warning}")
+        if record["review"]:
+            typer.echo("  a person should look at it before a machine acts on it")
         typer.echo(f"  written to {Path(record['skeleton']).parent}")

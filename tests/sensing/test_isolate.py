@@ -50,6 +50,17 @@ def test_a_point_chooses_the_tree_and_no_point_is_in_two(row: Scan, scene: Scene
     assert chosen.target[scene.trees[0].target].mean() < 0.5
 
 
+def test_a_tree_that_could_be_meant_as_well_is_named(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert isolate(scene, None).rival is None, "the others stand well aside"
+    monkeypatch.setattr("prunus.sensing.isolate.CLOSE", 10.0)
+    rival = isolate(scene, None).rival
+    assert rival is not None
+    assert np.array_equal(rival, scene.trees[1].foot)
+    assert isolate(scene, scene.trees[1].foot).rival is None, "a point says which is meant"
+
+
 def test_a_point_far_from_everything_is_refused(scene: Scene) -> None:
     with pytest.raises(PrunusError, match=r"m from the nearest part of the scan"):
         check_at(scene, np.array([9.0, 0, 0]))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from prunus.model import Floats, Ints, Label, Skeleton
+from prunus.model import Bools, Floats, Ints, Label, Skeleton
 
 Pair = tuple[int, int]
 ONE_A_TREE = (Label.TRUNK, Label.SUPPORT)
@@ -54,6 +54,18 @@ def edits(skeleton: Skeleton, corrected: Skeleton) -> Edits:
         {label: len(_with(ours, label) ^ _with(theirs, label)) for label in Label},
         segments,
         {label: int(corrected.edges_with(label).sum()) for label in Label},
+    )
+
+
+def unchanged(skeleton: Skeleton, corrected: Skeleton) -> Bools:
+    """Which edges (M - 1,) of a skeleton its correction keeps as they are, label and all."""
+    ours, theirs = _labelled(skeleton), _labelled(corrected)
+    return np.array(
+        [
+            pair in theirs and _excused(pair, ours, theirs, corrected) == label
+            for pair, label in ours.items()
+        ],
+        np.bool_,
     )
 
 

@@ -103,10 +103,10 @@ def _hung_right(ours: Side, theirs: Side, pairs: list[tuple[int, int]]) -> int:
     that one was found: a leader in two pieces is the right parent with either.
     """
     both = overlap(ours, theirs)
-    return sum(bool(_stands_for(both, ours.parent[q]) == theirs.parent[t]) for t, q in pairs)
+    return sum(bool(stands_for(both, ours.parent[q]) == theirs.parent[t]) for t, q in pairs)
 
 
-def _stands_for(both: Ints, branch: int) -> int:
+def stands_for(both: Ints, branch: int) -> int:
     """The true branch for which a predicted one stands; -1 for the base, -2 for none."""
     if branch < 0:
         return -1

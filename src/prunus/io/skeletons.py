@@ -30,6 +30,27 @@ class InputRecord(BaseModel):
     points: int
 
 
+class BranchTrust(BaseModel):
+    """How likely a branch is right."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str = Field(description="as in the report: leader 3 is the third from the left")
+    label: Word
+    nodes: list[int] = Field(description="along it, from the node at which it leaves its parent")
+    trust: float = Field(description="the probability that it is right")
+
+
+class TrustRecord(BaseModel):
+    """How likely a skeleton is right: docs/trust.md."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    tree: float = Field(description="the share of its edges that likely need no correction")
+    edges: list[float | None] = Field(description="that the edge into a node needs none; by node")
+    branches: list[BranchTrust]
+
+
 class SkeletonFile(BaseModel):
     """The contents of `skeleton.json`: one entry a node, whose edge is that from its parent."""
 
@@ -42,11 +63,17 @@ class SkeletonFile(BaseModel):
     nodes: list[Point] = Field(min_length=1, description="x, y, z; the base first")
     parent: list[int] = Field(description="an earlier node; -1 for the base")
     label: list[Word] = Field(description="of the edge from the parent; the base repeats the first")
-    confidence: list[float | None] = Field(description="of the edge; null = unknown")
+    confidence: list[float | None] = Field(
+        description="of the edge: that wood joins its ends; null = unknown"
+    )
     radius: list[float | None] = Field(description="null = unknown")
     superpoint: list[int] = Field(description="index of the superpoint; -1 = none")
     score: float | None = Field(
         None, description="under params.search.score: learned, or SkelScore"
+    )
+    trust: TrustRecord | None = None
+    review: list[str] | None = Field(
+        None, description="why a person should look before a machine acts; empty: no need"
     )
     input: InputRecord | None = None
     params: dict[str, Any] | None = None
@@ -55,7 +82,7 @@ class SkeletonFile(BaseModel):
 
 
 def write_skeleton(path: str | Path, skeleton: Skeleton, **evidence: Any) -> None:
-    """Write `skeleton.json`; `evidence`: score, input, params, seed, version_of_prunus."""
+    """Write `skeleton.json`; `evidence`: score, trust, review, input, params, seed, ..."""
     record = SkeletonFile(
         nodes=skeleton.xyz.tolist(),
         parent=skeleton.parent.tolist(),

@@ -57,6 +57,7 @@ BRANCH_TRAITS: dict[str, Trait] = {
         "share of the doubt about its diameter that the scan took away; "
         "0: the diameter is only what is usual",
     ),
+    "trust": Trait("1", "probability that it is right: its label, and what it hangs on"),
     "diameter_missing": Trait(
         "-", "why its diameters are unknown; empty where they are known", str
     ),
@@ -94,5 +95,6 @@ TREE_TRAITS: dict[str, Trait] = {
     "surface_cm2": Trait("cm2", "bark of the same"),
     "diameters_known_share": Trait("1", "share of the path length whose diameter is known"),
     "seen_share": Trait("1", "share of the path length at which the scan has points"),
+    "trust": Trait("1", "share of the edges that likely need no correction"),
 }
 """Unit and definition of each trait of a tree."""

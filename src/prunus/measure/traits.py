@@ -16,11 +16,12 @@ from prunus.measure.leaders import leaders
 from prunus.measure.names import branch_names
 from prunus.measure.refine import Refined
 from prunus.measure.sizes import Limb, Record
+from prunus.measure.trust import Trust
 from prunus.model import Label, Skeleton
 
 
-def branch_traits(tree: Refined) -> list[Record]:
-    """The traits of each branch (see `BRANCH_TRAITS`)."""
+def branch_traits(tree: Refined, trust: Trust | None = None) -> list[Record]:
+    """The traits of each branch (see `BRANCH_TRAITS`); without `trust` that is NaN."""
     skeleton = tree.skeleton
     found = branches(skeleton)
     names, order = branch_names(skeleton, found), orders(found, len(skeleton))
@@ -38,6 +39,7 @@ def branch_traits(tree: Refined) -> list[Record]:
                 "zone": _zone(skeleton, limb.line[0, 2]), **limb.sizes(), **limb.diameters(),
                 **limb.directions(), "spacing_m": spacing.get(int(branch.rows[-1]), math.nan),
                 "side_branches": carried.count(number), **limb.wood(), **limb.evidence(),
+                "trust": math.nan if trust is None else float(trust.branch[number]),
             }
         )  # fmt: skip
     return [{name: record[name] for name in BRANCH_TRAITS} for record in records]
@@ -49,8 +51,8 @@ def _zone(skeleton: Skeleton, height: float) -> str:
     return ZONES[min(max(third, 0), 2)]
 
 
-def tree_traits(tree: Refined) -> Record:
-    """The traits of the whole tree (see `TREE_TRAITS`)."""
+def tree_traits(tree: Refined, trust: Trust | None = None) -> Record:
+    """The traits of the whole tree (see `TREE_TRAITS`); without `trust` that is NaN."""
     rows, skeleton = branch_traits(tree), tree.skeleton
     of = {label: [row for row in rows if row["label"] == label.word] for label in Label}
     sides = of[Label.SIDE_BRANCH]
@@ -73,6 +75,7 @@ def tree_traits(tree: Refined) -> Record:
         "leader_cross_section_cm2": sum(row["cross_section_cm2"] for row in of[Label.LEADER]),
         "diameters_known_share": float(lengths[np.isfinite(skeleton.radius)].sum()) / total,
         "seen_share": float(lengths[tree.seen].sum()) / total,
+        "trust": math.nan if trust is None else trust.tree,
     }
     for zone in ZONES:
         record[f"side_branches_{zone}"] = sum(row["zone"] == zone for row in sides)

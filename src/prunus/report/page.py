@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterable
 from html import escape
 from importlib.util import find_spec
@@ -12,14 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from prunus.io.export import COLOURS
-from prunus.measure import branches, leaders, lengths_by_label
 from prunus.measure.cuts import Plan
-from prunus.model import Label
 from prunus.pipeline import Result
+from prunus.report.around import labels_of, leaders_of, review_of, seconds_of, summary_of
 from prunus.report.cuts import cut_traces, cuts_section
 from prunus.report.scene import left_out_traces, scene_traces
-from prunus.report.tables import html_table
 
 STYLE = """
 body{font:15px/1.45 system-ui,sans-serif;color:#222;margin:0 auto;max-width:1500px;padding:16px 24px}
@@ -79,16 +75,16 @@ def report_page(
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{escape(title)} - prunus</title>
 <style>{STYLE}</style><script>{library}</script></head><body>
-<h1>{escape(title)}</h1>{_summary(result)}
-{"".join(f'<p class="warn">{escape(text)}</p>' for text in result.warnings)}
+<h1>{escape(title)}</h1>{summary_of(result)}
+{review_of(result)}
 <div class="room"><div><div id="scene"></div>
 <p class="quiet">Drag turns, wheel zooms. Click a name in the list to show or hide it.
 House frame: X along the row, Y depth, Z up, metres, around the middle of the cloud; the files
 beside this page are in the frame of the input.</p>
 {"".join(f'<p class="quiet">{escape(note)}</p>' for note in notes)}
 {"" if plan is None else cuts_section(plan)}</div>
-<div>{_labels(result)}{_leaders(result)}
-<h2>Score by iteration</h2><div id="score"></div>{_seconds(result)}
+<div>{labels_of(result)}{leaders_of(result)}
+<h2>Score by iteration</h2><div id="score"></div>{seconds_of(result)}
 <details><summary class="quiet">parameters, seed {result.seed}</summary>
 <pre>{escape(result.params.to_toml())}</pre></details></div></div>
 <script>
@@ -116,54 +112,3 @@ def _plotly_library() -> str:
     assert spec is not None and spec.origin is not None
     library = Path(spec.origin).parent / "package_data" / "plotly.min.js"
     return library.read_text(encoding="utf-8")
-
-
-def _summary(result: Result) -> str:
-    graph = result.graph
-    return (
-        f"<p>Score {result.score:.2f}. {len(graph.superpoints.cloud):,} points "
-        f"({graph.superpoints.unused_points:,} in no superpoint), "
-        f"{len(graph.xyz)} superpoints, {len(graph.edges)} candidate edges "
-        f"(confidence: {escape(graph.scored.scorer)}), {len(graph.tips)} tips.</p>"
-    )
-
-
-def _labels(result: Result) -> str:
-    skeleton = result.in_house
-    lengths = lengths_by_label(skeleton)
-    rows = []
-    for label in Label:
-        colour = "rgb({},{},{})".format(*COLOURS[label])
-        name = (
-            f'<span class="dot" style="background:{colour}"></span>{label.word.replace("_", " ")}'
-        )
-        count = len(branches(skeleton, label))
-        edges = int(skeleton.edges_with(label).sum())
-        rows.append([name, str(count), str(edges), f"{lengths[label]:.2f}"])
-    return "<h2>Labels</h2>" + html_table(["", "branches", "edges", "length [m]"], rows)
-
-
-def _leaders(result: Result) -> str:
-    rows = [
-        [
-            str(number),
-            f"{leader.height:.2f}",
-            f"{leader.lean:.0f}",
-            "" if math.isnan(leader.spacing) else f"{leader.spacing:.2f}",
-            str(leader.side_branches),
-        ]
-        for number, leader in enumerate(leaders(result.in_house), 1)
-    ]
-    names = ["leader", "height [m]", "lean [deg]", "spacing [m]", "side branches"]
-    return "<h2>Leaders, from left to right</h2>" + html_table(names, rows)
-
-
-def _seconds(result: Result) -> str:
-    stages = [*result.seconds.items()]
-    total = tuple(sum(times) for times in zip(*result.seconds.values(), strict=True))
-    rows = [
-        [name, f"{cpu * 1000:.0f}", f"{wall * 1000:.0f}"]
-        for name, (cpu, wall) in [*stages, ("total", total)]
-    ]
-    note = '<p class="quiet">The first tree of a run also loads the compiled kernels.</p>'
-    return "<h2>Time by stage</h2>" + html_table(["stage", "CPU [ms]", "wall [ms]"], rows) + note

@@ -37,6 +37,8 @@ SAME = 0.5
 CROWN, FOOT, TRUNKLESS = 1.5, 0.5, 0.1
 """A metre by which the wood of a tree, or its foot, is farther from the camera counts as so many
 metres beside the middle of the scan; and so does a trunk that is not in view."""
+CLOSE = 0.5
+"""A tree so little farther aside, metres, could be meant as well."""
 SNAPS = 0.25
 """A point given by hand means the trunk within so many metres."""
 
@@ -46,12 +48,13 @@ class Isolated:
     """What each point (P,) of a scan is to one tree (`model.Kind`), and where that stands.
 
     `base` (3,), house frame, is where the network looked from; `foot` (3,) the lowest point of the
-    trunk that the scan holds.
+    trunk that the scan holds; `rival` (3,) the foot of another tree that could be meant as well.
     """
 
     kind: Ints
     base: Floats
     foot: Floats
+    rival: Floats | None = None
 
     @property
     def target(self) -> Bools:
@@ -136,6 +139,13 @@ class Scene:
         trunkless = not any(one.length > 0 and one.base is tree.base for one in self.trunks)
         return float(beside + deeper + TRUNKLESS * trunkless - tree.target.mean())
 
+    @property
+    def rival(self) -> Floats | None:
+        """The foot (3,) of the tree that could be meant as well as the first; None where none."""
+        first, *others = self.trees
+        close = others and self._aside(others[0]) < self._aside(first) + CLOSE
+        return others[0].foot if close else None
+
     def tree_at(self, base: Floats) -> Isolated:
         """What each point is to the tree with that base (3,)."""
         return self._isolated(self._likely(base), base)
@@ -171,7 +181,7 @@ def isolate(scene: Scene, at: Floats | None) -> Isolated:
     """
     if at is None:
         if scene.trees:
-            return scene.tree_at(scene.trees[0].base)
+            return replace(scene.tree_at(scene.trees[0].base), rival=scene.rival)
         raise PrunusError(
             "no trunk was found in the scan; expected one in view, Z up and in metres "
             "(or say where the tree stands: --at X Y Z)"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,8 @@ STEP = 0.002
 """Where a branch comes out of its parent's bark is looked for in steps of so many metres ..."""
 NEAR = 0.30
 """... within so many metres of its start."""
+OUTSET, ONWARD = 0.04, 0.12
+"""A branch bends at its foot when its first so many metres turn into those up to there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +54,14 @@ class Limb:
         edge = int(np.clip(np.searchsorted(self.along, along), 1, len(self.rows) - 1))
         vector = self.xyz[edge] - self.xyz[edge - 1]
         return np.asarray(vector / max(float(np.linalg.norm(vector)), 1e-12))
+
+    @property
+    def bend(self) -> float:
+        """The turn, degrees, between the first of it outside the bark and what comes then."""
+        foot, knee, on = (self.at(self.bark + way) for way in (0.0, OUTSET, ONWARD))
+        first, then = knee - foot, on - knee
+        size = max(float(np.linalg.norm(first) * np.linalg.norm(then)), 1e-12)
+        return math.degrees(math.acos(np.clip(first @ then / size, -1, 1)))
 
     def value_at(self, along: float, values: Floats) -> float:
         """A value (M,) of the skeleton's rows there; NaN where it is unknown on either side.

@@ -1,0 +1,79 @@
+"""`python -m bench.fit_trust [--trees 60] [--seed 500000] [--write]`: how far to trust a skeleton.
+
+Logistic regressions over what is known of the branches and edges that the chain finds on simulated
+scans (see `bench.trust`), those left out of which the wrong tree was taken: whether another could
+be meant is told apart from this. A ridge keeps weights small where there is little to learn from.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+
+import numpy as np
+
+from bench.trust import CASES, Tried, tried
+from prunus.io.safely import write_bytes
+from prunus.learn.logistic import fit_logistic
+from prunus.measure.odds import Odds
+from prunus.measure.trust import Model
+from prunus.measure.trust.evidence import Evidence, of_branches, of_edges
+from prunus.measure.trust.model import SHIPPED
+from prunus.model import Bools, Label
+
+RIDGE = 2.0
+WRONG_TREE = 2.0
+"""Where so many edits an edge are needed, it is the skeleton of another tree."""
+APART = 1000
+"""The cases have seeds so far apart."""
+
+
+def odds_of(evidence: Sequence[Evidence], right: Bools) -> Odds:
+    """The odds that fit some evidence (C) and what was right (C,)."""
+    names = list(evidence[0])
+    values = np.array([[one[name] for name in names] for one in evidence])
+    usual, scale = np.nanmean(values, axis=0), np.nanstd(values, axis=0) + 1e-9
+    weights = fit_logistic(np.nan_to_num((values - usual) / scale), right, RIDGE)
+    weight = dict(zip(names, (weights[:-1] / scale).tolist(), strict=True))
+    return Odds(float(weights[-1]), weight, dict(zip(names, usual.tolist(), strict=True)))
+
+
+def fitted(some: list[Tried]) -> Model:
+    """The model of some trees: the branches first, then the edges, given those."""
+    told = [of_branches(one.known) for one in some]
+    label = np.concatenate([one.label for one in some])
+    right = np.concatenate([one.right for one in some])
+    flat = [evidence for branches in told for evidence in branches]
+    branch = {}
+    for kind in Label:
+        own = np.flatnonzero(label == kind)
+        branch[kind] = odds_of([flat[row] for row in own], right[own])
+    edges: list[Evidence] = []
+    for one, evidence in zip(some, told, strict=True):
+        pairs = zip(one.label.tolist(), evidence, strict=True)
+        trust = np.array([branch[Label(kind)](known) for kind, known in pairs])
+        edges += of_edges(one.known, trust)
+    return Model(branch, odds_of(edges, np.concatenate([one.unchanged for one in some])))
+
+
+def main() -> None:
+    """Fit, print, and with `--write` put the model in place."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--trees", type=int, default=60)
+    parser.add_argument("--seed", type=int, default=500_000)
+    parser.add_argument("--write", action="store_true")
+    chosen = parser.parse_args()
+    some = []
+    for number, case in enumerate(CASES):
+        first = chosen.seed + APART * number
+        found = [tried(seed, *case) for seed in range(first, first + chosen.trees)]
+        some += [one for one in found if one is not None and one.ratio < WRONG_TREE]
+        print(f"{case}: {len(some)} trees so far", flush=True)
+    model = fitted(some)
+    print(model.to_toml())
+    if chosen.write:
+        write_bytes(SHIPPED, model.to_toml().encode())
+
+
+if __name__ == "__main__":
+    main()

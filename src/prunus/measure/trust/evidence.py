@@ -1,0 +1,126 @@
+"""What is known of each branch and each edge of a skeleton: by network, score, shape and points."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from prunus.measure.branches import Branch, branches
+from prunus.measure.cuts.limbs import Limb, Limbs
+from prunus.measure.refine import Refined
+from prunus.model import Floats, Ints, Skeleton
+
+LEAST = 0.02
+"""Probabilities below are taken for it."""
+SHORT = 0.05
+"""What is shorter counts as so long, metres, where something is taken by the metre."""
+FAR = 0.30
+"""A tip farther from all else is no better, metres."""
+TINY = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """A skeleton in the house frame and all that is known of it.
+
+    `fine` is the same refined; gain, likely (M, L) what each edge brings under each label, and how
+    likely that is by the network (`search.judged`).
+    """
+
+    skeleton: Skeleton
+    fine: Refined
+    gain: Floats
+    likely: Floats
+
+
+Evidence = dict[str, float]
+
+
+def of_branches(known: Known) -> list[Evidence]:
+    """The evidence of each branch, in the order of `measure.branches`.
+
+    Of its edges, weighted by length: `edges`, the mean logarithm of the confidence, `least` of
+    the least, `first` of that at its foot, `path` of the least on the way from the base to it;
+    `kind`, the mean logarithm of how likely its label is; `rival`, how much more it brings, a
+    metre, under its label than under the next best. Of its shape: `length`, logarithm of metres;
+    `straight`, from foot to tip over that; `bend`, logarithm of the degrees at its foot; `touch`,
+    metres from its tip to the nearest other branch. Of the points: `seen`, the share with any.
+    """
+    limbs = Limbs.of(known.fine.skeleton).all
+    found = branches(known.skeleton)
+    return [_of_branch(known, *pair) for pair in zip(found, limbs, strict=True)]
+
+
+def _of_branch(known: Known, branch: Branch, limb: Limb) -> Evidence:
+    skeleton, rows, label = known.skeleton, branch.rows[1:], int(branch.label)
+    weight = skeleton.lengths[rows] + TINY
+    confidence = _log(skeleton.confidence[rows])
+    brings = known.gain[rows].sum(axis=0)
+    fine = limb.rows[1:]
+    beeline = float(np.linalg.norm(skeleton.xyz[rows[-1]] - skeleton.xyz[branch.rows[0]]))
+    return {
+        "edges": float(np.average(confidence, weights=weight)),
+        "least": float(confidence.min()),
+        "first": float(confidence[0]),
+        "path": _least_below(skeleton, int(branch.rows[0])),
+        "kind": float(np.average(_log(known.likely[rows, label]), weights=weight)),
+        "rival": float(brings[label] - np.delete(brings, label).max()) / max(branch.length, SHORT),
+        "length": math.log(max(branch.length, LEAST)),
+        "straight": beeline / max(branch.length, TINY),
+        "bend": math.log(max(limb.bend, 2.0)),
+        "touch": _touch(skeleton, branch.rows),
+        "seen": float(
+            np.average(known.fine.seen[fine], weights=known.fine.skeleton.lengths[fine] + TINY)
+        ),
+    }
+
+
+def of_edges(known: Known, branch_trust: Floats) -> list[Evidence]:
+    """The evidence of each edge (M - 1,), given the probability that each branch (B,) is right.
+
+    `edge`, `kind`: logarithms of its confidence and of how likely its label is; `branch`: the log
+    odds of its branch, `whole` the logarithm of that one's length; `length`, metres; `foot`, `tip`:
+    1 for the first and the last edge of a branch.
+    """
+    skeleton = known.skeleton
+    odds = np.log(branch_trust.clip(TINY, 1 - TINY) / (1 - branch_trust.clip(TINY, 1 - TINY)))
+    found: dict[int, Evidence] = {}
+    for number, branch in enumerate(branches(skeleton)):
+        for row in branch.rows[1:].tolist():
+            found[row] = {
+                "edge": float(_log(skeleton.confidence[row])),
+                "kind": float(_log(known.likely[row, int(branch.label)])),
+                "branch": float(odds[number].clip(-MOST, MOST)),
+                "whole": math.log(max(branch.length, LEAST)),
+                "length": float(skeleton.lengths[row]),
+                "foot": float(row == branch.rows[1]),
+                "tip": float(row == branch.rows[-1]),
+            }
+    return [found[row] for row in range(1, len(skeleton))]
+
+
+MOST = 4.0
+"""Log odds of a branch are no farther from even."""
+
+
+def _least_below(skeleton: Skeleton, row: int) -> float:
+    """The logarithm of the least confidence on the way from the base to a row."""
+    least = 1.0
+    while row > 0:
+        least = min(least, float(skeleton.confidence[row]))
+        row = int(skeleton.parent[row])
+    return float(_log(least))
+
+
+def _touch(skeleton: Skeleton, rows: Ints) -> float:
+    """How near the tip of a branch is to a node of another, metres."""
+    others = np.delete(skeleton.xyz, rows, axis=0)
+    if len(others) == 0:
+        return FAR
+    return min(float(np.linalg.norm(others - skeleton.xyz[rows[-1]], axis=1).min()), FAR)
+
+
+def _log(probability: Floats | float) -> Floats:
+    return np.asarray(np.log(np.clip(probability, LEAST, 1.0)))
