@@ -23,7 +23,7 @@ from prunus.studio.modes.mode import put
 from prunus.studio.planned import planned
 from prunus.studio.shelf import Item
 from prunus.studio.tree import Tree
-from tests.studio.conftest import Remote, Visit, until
+from tests.studio.conftest import Remote, Visit, soon, until
 
 Opened = Callable[..., Visit]
 
@@ -96,11 +96,38 @@ def test_a_path_is_added_stop_by_stop(opened: Opened) -> None:
     end = free_superpoint(visit)
     visit.click(draft.places[end])
     until(lambda: visit.desk.mode.path.stops == [begin, end], "the second stop")
+    mode = visit.desk.mode
+    routed = mode.path.way(mode._scope(), routed=True)
+    until(lambda: lines_of(visit, "stops-line") == len(routed) - 1, "the routed way")
     visit.page.get_by_label("routed").uncheck()
+    until(lambda: lines_of(visit, "stops-line") == 1, "the straight way")
     visit.press("end")
     until(lambda: end in visit.nodes, "the path")
     assert set(first) < set(visit.nodes)
     assert isinstance(visit.desk.tree.work.acts[-1], AddPath)
+
+
+def test_a_choice_gives_the_keys_back(opened: Opened) -> None:
+    visit = opened()
+    visit.press("Correct")
+    visit.reads("Click a branch, then")
+    visit.page.get_by_label("Relabel the").first.click()
+    visit.page.get_by_role("option", name="onward").click()
+    until(lambda: visit.desk.mode.reach.value == "onward", "onward")
+
+    def heard() -> bool:
+        visit.page.get_by_label("at superpoints").click()
+        visit.page.wait_for_timeout(500)
+        visit.page.keyboard.press("u")
+        return bool(soon(lambda: visit.desk.mode.reach.value == "until"))
+
+    until(heard, "a key that is heard after a choice")
+
+
+def lines_of(visit: Visit, mark: str) -> int:
+    """How many lines a mark in the scene has."""
+    drawn = visit.desk.painter.drawn.get(f"/mark/{mark}")
+    return 0 if drawn is None else len(drawn.places) // (2 * 3 * 4)
 
 
 def test_a_path_that_is_drawn_in_another_way_is_at_its_end(opened: Opened) -> None:

@@ -88,16 +88,16 @@ class Desk:
             self.tree.leave(self.refresh)
 
     def choose(self, name: str) -> None:
-        """Work in another mode."""
+        """Work in another mode; what it says is seen once its keys are heard."""
         with self.lock:
             self.refusal.clear()
             self.mode.leave()
             self.mode = next(mode for mode in self.modes if mode.name == name)
-            for mode, folder in zip(self.modes, self.folders, strict=True):
-                folder.visible = mode is self.mode
-            self._offer_modes()
             self._hold_keys()
             self.mode.enter()
+            self._offer_modes()
+            for mode, folder in zip(self.modes, self.folders, strict=True):
+                folder.visible = mode is self.mode
             self.redraw()
 
     def refresh(self) -> None:

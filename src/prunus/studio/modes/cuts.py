@@ -13,7 +13,7 @@ from prunus.io.export import COLOURS
 from prunus.measure.cuts import Cut
 from prunus.model import Floats, Ints, Label
 from prunus.report.cuts import BLADE, LOOK, SURE, WAY, cone, disc
-from prunus.studio.modes.mode import Key, Mode, watch
+from prunus.studio.modes.mode import Key, Mode, freed, watch
 from prunus.studio.picking import Ray, nearest_point
 from prunus.studio.picture import colour_of
 from prunus.studio.planned import Planned, planned
@@ -42,9 +42,11 @@ class Cuts(Mode):
         self.text = gui.add_html("")
         steps = gui.add_button_group("Look at", ("back", "next"), hint="B, N")
         steps.on_click(lambda event: self.desk.try_to(lambda: self._step(event.target.value)))
-        self.every = gui.add_checkbox("every cut", False, hint="Else those for a person first")
+        self.every = freed(
+            gui.add_checkbox("every cut", False, hint="Else those for a person first")
+        )
         watch(self.every, lambda value: self._tell())
-        self.ways = gui.add_checkbox("ways to them", True, hint="In which a tool comes")
+        self.ways = freed(gui.add_checkbox("ways to them", True, hint="In which a tool comes"))
         watch(self.ways, lambda value: self._paint())
         self.card = gui.add_html("")
         save = gui.add_button("Save plan", hint="As plan.json beside the corrected skeleton")
