@@ -58,6 +58,13 @@ def browser() -> Iterator[Any]:
         opened.close()
 
 
+def new_page(browser: Any) -> Any:
+    """A page of the browser, as patient as all else here."""
+    page = browser.new_page(viewport={"width": 1280, "height": 800})
+    page.set_default_timeout(1000 * PATIENCE)
+    return page
+
+
 @pytest.fixture(scope="session")
 def orchard(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a clean scan of a tree, a file that is none, and one with a hostile name."""
@@ -202,7 +209,7 @@ def opened(browser: Any, orchard: Path, tmp_path: Path) -> Iterator[Callable[...
     def open_one(name: str = "oak.ply", token: str | None = None, work: Path = tmp_path) -> Visit:
         items = items_in(orchard / name, work)
         studio = Studio(items, Settings(), "127.0.0.1", 0, token)
-        page = browser.new_page(viewport={"width": 1280, "height": 800})
+        page = new_page(browser)
         ends.extend([page.close, studio.stop])
         visit = Visit(page, studio)
         if token is None and name:

@@ -23,7 +23,7 @@ from prunus.studio.modes.mode import put
 from prunus.studio.planned import planned
 from prunus.studio.shelf import Item
 from prunus.studio.tree import Tree
-from tests.studio.conftest import Remote, Visit, soon, until
+from tests.studio.conftest import Remote, Visit, new_page, soon, until
 
 Opened = Callable[..., Visit]
 
@@ -365,6 +365,6 @@ def running(scan: Path, work: Path) -> Iterator[tuple[subprocess.Popen[str], str
 
 @contextmanager
 def a_page(browser: Any) -> Iterator[Any]:
-    page = browser.new_page(viewport={"width": 1280, "height": 800})
+    page = new_page(browser)
     yield page
     page.close()
