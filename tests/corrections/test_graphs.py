@@ -1,7 +1,7 @@
 """What a journal was begun on is kept beside it: it outlives the chain, and a broken file."""
 
 import json
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -57,10 +57,13 @@ def files(folder: Path) -> dict[str, bytes]:
     return {name: (folder / name).read_bytes() for name in names if (folder / name).exists()}
 
 
-def test_what_was_written_is_read(raw: Result, tmp_path: Path) -> None:
+@pytest.mark.parametrize("rival", [None, np.array([0.5, 0.25, -1.0])])
+def test_what_was_written_is_read(raw: Result, tmp_path: Path, rival: np.ndarray | None) -> None:
+    assert raw.isolated is not None
+    raw = replace(raw, isolated=replace(raw.isolated, rival=rival))
     write_graph(tmp_path / "graph.npz", raw)
     again = read_graph(tmp_path / "graph.npz").result(raw.scan, raw.params, raw.seed)
-    assert raw.isolated is not None and len(raw.scan) > len(raw.graph.superpoints.cloud)
+    assert len(raw.scan) > len(raw.graph.superpoints.cloud)
     for name in ("in_house", "isolated", "score", "history", "warnings", "notes", "scan", "seed"):
         assert same(getattr(again, name), getattr(raw, name)), name
     assert same(again.graph, raw.graph)

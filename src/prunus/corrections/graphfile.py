@@ -41,7 +41,7 @@ class GraphRecord(BaseModel):
     """What a file says beside its arrays.
 
     `points` are those of the cloud that the machine was given; `to_house` the rotation from the
-    frame of the scan's file; `isolated_at` and `foot` are of isolation, null where there was none.
+    frame of the scan's file; `isolated_at`, `foot` and `rival` are of isolation, null for none.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
@@ -58,6 +58,7 @@ class GraphRecord(BaseModel):
     notes: list[str]
     isolated_at: Row | None
     foot: Row | None
+    rival: Row | None = None
     version_of_prunus: str
 
 
@@ -129,8 +130,9 @@ def write_graph(path: Path, result: Result) -> None:
         "score": result.score,
         "warnings": result.warnings,
         "notes": result.notes,
-        "isolated_at": None if isolated is None else _row(isolated.base.tolist()),
-        "foot": None if isolated is None else _row(isolated.foot.tolist()),
+        "isolated_at": _place(None if isolated is None else isolated.base),
+        "foot": _place(None if isolated is None else isolated.foot),
+        "rival": _place(None if isolated is None else isolated.rival),
         "version_of_prunus": __version__,
     }
     write_arrays(path, arrays, GraphRecord.model_validate(told).model_dump_json())
@@ -145,6 +147,10 @@ def rows_of(part: Floats, whole: Floats) -> Ints:
     first = np.empty(len(both), np.int64)
     first[order] = order[new][np.cumsum(new) - 1]
     return np.asarray(first[len(whole) :])
+
+
+def _place(place: Floats | None) -> Row | None:
+    return None if place is None else _row(place.tolist())
 
 
 def _row(values: Any) -> tuple[Any, ...]:
@@ -193,4 +199,5 @@ def _isolated(arrays: Arrays, told: GraphRecord) -> Isolated | None:
     kind = indices(arrays, "kind", len(Kind))
     if kind.shape != (told.points,):
         raise ValueError(f"kind: of shape {kind.shape}; expected ({told.points},)")
-    return Isolated(kind, np.array(told.isolated_at), np.array(told.foot))
+    rival = None if told.rival is None else np.array(told.rival)
+    return Isolated(kind, np.array(told.isolated_at), np.array(told.foot), rival)
