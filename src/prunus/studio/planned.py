@@ -7,13 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from prunus.corrections import State, Work, branch_names
+from prunus.corrections import State, Work
 from prunus.corrections.draft import pair_of
 from prunus.cutting import plan_file
 from prunus.errors import PrunusError
 from prunus.io.plans import PlanFile, read_plan
 from prunus.measure import branches
 from prunus.measure.cuts import Plan, plan_cuts
+from prunus.measure.names import branch_names
 from prunus.measure.refine import refined
 from prunus.model import Kind, Skeleton
 from prunus.pipeline import REFINED_WITH
@@ -34,15 +35,15 @@ def planned(state: State) -> Planned:
     """The plan by the shipped rules, house frame; takes some tenths of a second.
 
     The tree is refined to the points that are marked as its own. Branches have the names that
-    they have on the page.
+    they have on the page: refining keeps their order.
     """
     own = state.scan.take(state.kind == Kind.TARGET)
     points = own.sample(REFINED_WITH, np.random.default_rng(state.result.seed))
-    tree = refined(_vouched(state), points)
-    told = branch_names(state.draft)
-    names = _names(tree.skeleton, told)
+    coarse = _vouched(state)
+    tree = refined(coarse, points)
+    names = branch_names(coarse, branches(coarse))
     plan = plan_cuts(tree, state.scan.xyz, names=names)
-    return Planned(plan, tree.skeleton, {name: node for node, name in told.items()})
+    return Planned(plan, tree.skeleton, _nodes(coarse, names))
 
 
 def _vouched(state: State) -> Skeleton:
@@ -57,10 +58,10 @@ def _vouched(state: State) -> Skeleton:
     return replace(tree, confidence=np.where(told, 1.0, tree.confidence))
 
 
-def _names(fine: Skeleton, told: dict[int, str]) -> list[str]:
-    """The name of each branch of a refined skeleton, by the first node on it."""
-    stands = (fine.superpoint[branch.rows[1:]] for branch in branches(fine))
-    return [told[int(nodes[nodes >= 0][0])] for nodes in stands]
+def _nodes(tree: Skeleton, names: list[str]) -> dict[str, int]:
+    """The first node of each branch, by its name."""
+    firsts = (int(tree.superpoint[branch.rows[1]]) for branch in branches(tree))
+    return dict(zip(names, firsts, strict=True))
 
 
 def file_of(plan: Plan, work: Work) -> PlanFile:
