@@ -42,6 +42,16 @@ def test_a_scan_without_truth_beside_it_stands_for_itself(tmp_path: Path) -> Non
     assert clouds_in(tmp_path) == [tmp_path / "scan.ply", tmp_path / "tree2.ply"]
 
 
+def test_what_the_studio_keeps_beside_a_journal_is_no_scan(tmp_path: Path) -> None:
+    kept = ("mask.ply", "graph.npz", "graph-12.npz")
+    assert clouds_in(touched(tmp_path / "scans", *kept)) == [
+        tmp_path / "scans" / name for name in sorted(kept)
+    ]
+    assert clouds_in(touched(tmp_path / "work", *kept, "journal.jsonl", "own.ply")) == [
+        tmp_path / "work" / "own.ply"
+    ]
+
+
 def test_recordings_lie_in_a_folder_like_clouds(tmp_path: Path) -> None:
     touched(tmp_path, "a.bag", "b.ply", "c/metadata.yaml", "c/c_0.mcap", "d/x.mcap", "E.MCAP")
     assert [path.name for path in clouds_in(tmp_path)] == ["E.MCAP", "a.bag", "b.ply", "c"]

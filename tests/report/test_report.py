@@ -5,13 +5,18 @@ import re
 from html import escape
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from prunus.measure import branches
 from prunus.measure.cuts import Plan, plan_cuts
 from prunus.pipeline import Result, skeletonize
 from prunus.report import report_page
 from prunus.report.cuts import cut_traces
+from prunus.report.scene import scene_traces
 from tests.conftest import simulated
+
+GAP = (None, None, None)
 
 
 @pytest.fixture(scope="module")
@@ -44,8 +49,28 @@ def test_the_scene_has_a_switch_for_every_piece_of_evidence(page: str) -> None:
     names = [trace["name"] for trace in traces]
     assert names[:7] == ["cloud", "trunk", "support", "leader", "side branch", "base", "tips"]
     hidden = {trace["name"] for trace in traces if trace["visible"] == "legendonly"}
-    assert "superpoints" in hidden
+    assert "superpoints" in hidden and "refined" in hidden
     assert sum(name.startswith("candidates, confidence") for name in hidden) == 3
+
+
+def test_the_refined_skeleton_is_in_the_scene_branch_by_branch(found: Result) -> None:
+    fine = found.refined.skeleton
+    traces = scene_traces(found.in_house, fine, found.graph)
+    (line,) = [trace for trace in traces if trace["name"] == "refined"]
+    ends = [k for k, value in enumerate(line["x"]) if value is None]
+    assert len(ends) == len(branches(fine)) and ends[-1] == len(line["x"]) - 1
+    drawn = {(x, y, z) for x, y, z in zip(line["x"], line["y"], line["z"], strict=True)} - {GAP}
+    assert drawn == {tuple(row) for row in np.round(fine.xyz, 4).tolist()}
+    assert len(line["text"]) == len(line["x"])
+    assert sum(text.endswith("mm thick") for text in line["text"]) > len(fine) / 2
+
+
+def test_a_tree_of_one_node_has_no_refined_lines(found: Result) -> None:
+    alone = found.in_house.part(np.arange(len(found.in_house)) == 0)
+    (line,) = [
+        trace for trace in scene_traces(alone, alone, found.graph) if trace["name"] == "refined"
+    ]
+    assert line["x"] == [None]
 
 
 def test_tables_hold_leaders_times_and_parameters(page: str, found: Result) -> None:

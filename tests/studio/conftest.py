@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -22,7 +23,7 @@ CHROMIUM = Path("/usr/bin/chromium")
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader",
          "--disable-quic", "--no-first-run", "--disable-background-networking",
          "--disable-component-update", "--disable-sync"]  # fmt: skip
-PATIENCE = 60.0
+PATIENCE = 180.0
 """Seconds after which nothing more is expected; a slow machine compiles the kernels meanwhile."""
 
 
@@ -37,6 +38,14 @@ def until(holds: Callable[[], Any], what: str) -> Any:
     pytest.fail(f"waited in vain: {what}")
 
 
+def soon(holds: Callable[[], Any]) -> Any:
+    """What a condition gives within a second or two, as things come to pass on a page."""
+    end = time.monotonic() + 2.0
+    while not (found := holds()) and time.monotonic() < end:
+        time.sleep(0.02)
+    return found
+
+
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
     sync = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
@@ -47,6 +56,13 @@ def browser() -> Iterator[Any]:
         opened = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
         yield opened
         opened.close()
+
+
+def new_page(browser: Any) -> Any:
+    """A page of the browser, as patient as all else here."""
+    page = browser.new_page(viewport={"width": 1280, "height": 800})
+    page.set_default_timeout(1000 * PATIENCE)
+    return page
 
 
 @pytest.fixture(scope="session")
@@ -79,7 +95,6 @@ class Remote:
         """Open the page, and wait until the skeleton is drawn."""
         self.page.goto(url)
         self.reads("edit distance")
-        self.page.wait_for_timeout(1500)
 
     def press(self, name: str) -> None:
         """Click a button."""
@@ -95,10 +110,24 @@ class Remote:
         canvas = self.page.locator("canvas").first.bounding_box()
         self.page.mouse.click(canvas["x"] + u * canvas["width"], canvas["y"] + v * canvas["height"])
 
+    def click_until(self, place: Floats, holds: Callable[[], Any]) -> None:
+        """Click a place until that has led to something: the view may still be moving."""
+
+        def clicked() -> bool:
+            self.click(place)
+            return bool(soon(holds))
+
+        until(clicked, "what a click leads to")
+
     def click_edge(self, node: int) -> None:
-        """Click the middle of the edge into a node."""
+        """Click the middle of the edge into a node, and wait until it is picked."""
         skeleton, row = self.picture.skeleton, self.picture.row(node)
-        self.click(skeleton.xyz[[row, skeleton.parent[row]]].mean(axis=0))
+        middle = skeleton.xyz[[row, skeleton.parent[row]]].mean(axis=0)
+        self.click_until(middle, lambda: self.has_picked(node))
+
+    def has_picked(self, node: int) -> bool:
+        """Whether the page tells of the edge into a node."""
+        return bool(self.page.get_by_text(re.compile(rf"^node {node}$")).count())
 
     def branches_apart(self, label: Label) -> list[int]:
         """A node of each branch of a label, where a click on its edge can mean no other."""
@@ -160,10 +189,9 @@ class Visit(Remote):
 
         until(still, "a camera that stands still")
 
-    def click_edge(self, node: int) -> None:
-        """Click the middle of the edge into a node, and wait until it is picked."""
-        super().click_edge(node)
-        until(lambda: self.desk.picked == node, f"edge {node} picked")
+    def has_picked(self, node: int) -> bool:
+        """Whether the edge into a node is picked."""
+        return bool(self.desk.picked == node)
 
     def a_branch(self, label: Label) -> int:
         """A node of one branch of a label."""
@@ -181,7 +209,7 @@ def opened(browser: Any, orchard: Path, tmp_path: Path) -> Iterator[Callable[...
     def open_one(name: str = "oak.ply", token: str | None = None, work: Path = tmp_path) -> Visit:
         items = items_in(orchard / name, work)
         studio = Studio(items, Settings(), "127.0.0.1", 0, token)
-        page = browser.new_page(viewport={"width": 1280, "height": 800})
+        page = new_page(browser)
         ends.extend([page.close, studio.stop])
         visit = Visit(page, studio)
         if token is None and name:

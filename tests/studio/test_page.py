@@ -11,15 +11,19 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
 from prunus.corrections import AddPath, Settings
+from prunus.io.plans import read_plan
 from prunus.io.skeletons import read_skeleton
 from prunus.model import Label
+from prunus.studio.modes import cuts
 from prunus.studio.modes.correct import REACHES
 from prunus.studio.modes.mode import put
+from prunus.studio.planned import planned
 from prunus.studio.shelf import Item
 from prunus.studio.tree import Tree
-from tests.studio.conftest import Remote, Visit, until
+from tests.studio.conftest import Remote, Visit, new_page, soon, until
 
 Opened = Callable[..., Visit]
 
@@ -92,11 +96,38 @@ def test_a_path_is_added_stop_by_stop(opened: Opened) -> None:
     end = free_superpoint(visit)
     visit.click(draft.places[end])
     until(lambda: visit.desk.mode.path.stops == [begin, end], "the second stop")
+    mode = visit.desk.mode
+    routed = mode.path.way(mode._scope(), routed=True)
+    until(lambda: lines_of(visit, "stops-line") == len(routed) - 1, "the routed way")
     visit.page.get_by_label("routed").uncheck()
+    until(lambda: lines_of(visit, "stops-line") == 1, "the straight way")
     visit.press("end")
     until(lambda: end in visit.nodes, "the path")
     assert set(first) < set(visit.nodes)
     assert isinstance(visit.desk.tree.work.acts[-1], AddPath)
+
+
+def test_a_choice_gives_the_keys_back(opened: Opened) -> None:
+    visit = opened()
+    visit.press("Correct")
+    visit.reads("Click a branch, then")
+    visit.page.get_by_label("Relabel the").first.click()
+    visit.page.get_by_role("option", name="onward").click()
+    until(lambda: visit.desk.mode.reach.value == "onward", "onward")
+
+    def heard() -> bool:
+        visit.page.get_by_label("at superpoints").click()
+        visit.page.wait_for_timeout(500)
+        visit.page.keyboard.press("u")
+        return bool(soon(lambda: visit.desk.mode.reach.value == "until"))
+
+    until(heard, "a key that is heard after a choice")
+
+
+def lines_of(visit: Visit, mark: str) -> int:
+    """How many lines a mark in the scene has."""
+    drawn = visit.desk.painter.drawn.get(f"/mark/{mark}")
+    return 0 if drawn is None else len(drawn.places) // (2 * 3 * 4)
 
 
 def test_a_path_that_is_drawn_in_another_way_is_at_its_end(opened: Opened) -> None:
@@ -179,12 +210,78 @@ def test_edges_are_labelled_one_key_each(opened: Opened, tmp_path: Path) -> None
     assert (tmp_path / "oak" / "labels.jsonl").read_text().count("\n") == 4
 
 
+def test_cuts_are_planned_looked_at_and_saved(
+    opened: Opened, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[Any] = []
+
+    def counted(state: Any) -> Any:
+        made.append(state)
+        return planned(state)
+
+    monkeypatch.setattr(cuts, "planned", counted)
+    visit = opened()
+    visit.press("Cuts")
+    plan = until(lambda: visit.desk.mode.planned, "a plan").plan
+    visit.reads("for a person to look at first")
+    assert "/mark/ways" in visit.desk.painter.drawn
+
+    # Step through those that a person looks at first, then click one from the front.
+    looked = [number for number, cut in enumerate(plan.cuts) if cut.needs_review]
+    for number in looked[:2]:
+        visit.page.keyboard.press("n")
+        until(lambda number=number: visit.desk.mode.at == number, "the next cut")
+        visit.reads(plan.cuts[number].reasons[0])
+    visit.page.keyboard.press("b")
+    until(lambda: visit.desk.mode.at == looked[0], "the cut before")
+    visit.page.keyboard.press("f")
+    last = max(range(len(plan.cuts)), key=lambda n: plan.cuts[n].point[2])
+    visit.click_until(np.array(plan.cuts[last].point), lambda: visit.desk.mode.at == last)
+    visit.reads(plan.cuts[last].because)
+
+    # Saved, and told to be old once the tree is another; no act but the mode makes a plan.
+    visit.press("Save plan")
+    visit.reads("saved in plan.json")
+    assert len(read_plan(tmp_path / "oak" / "plan.json").cuts) == len(plan.cuts)
+    visit.press("Correct")
+    visit.reads("Click a branch, then")
+    assert "/mark/ways" not in visit.desk.painter.drawn
+    visit.press("Cuts")
+    visit.reads("saved in plan.json")
+    visit.press("Correct")
+    visit.reads("Click a branch, then")
+    side = visit.a_branch(Label.SIDE_BRANCH)
+    visit.click_edge(side)
+    visit.page.keyboard.press("Shift+Delete")
+    until(lambda: side not in visit.nodes, "the branch gone")
+    assert len(made) == 1
+    visit.press("Cuts")
+    visit.reads("is of the tree as it was before")
+    assert len(made) == 2
+
+
+def test_the_mode_stays_on_with_another_tree(opened: Opened) -> None:
+    visit = opened("")
+    visit.page.goto(visit.studio.url)
+    visit.reads("cannot be opened")
+    visit.press("Label")
+    visit.reads("\N{BLACK CIRCLE} Label")
+    for _ in range(2):
+        number = visit.desk.number
+        visit.page.keyboard.press("PageDown")
+        until(lambda number=number: visit.desk.number != number, "the next tree")
+    visit.see_tree()
+    visit.reads("0 of")
+
+
 def test_a_broken_file_is_told_and_the_page_lives_on(opened: Opened) -> None:
     visit = opened("")
     visit.page.goto(visit.studio.url)
     visit.reads("cannot be opened")
-    visit.page.keyboard.press("PageDown")
-    visit.page.keyboard.press("PageDown")
+    for _ in range(2):
+        number = visit.desk.number
+        visit.page.keyboard.press("PageDown")
+        until(lambda number=number: visit.desk.number != number, "the next tree")
     visit.see_tree()
     visit.reads("edit distance")
     assert visit.page.locator("img[src=x]").count() == 0
@@ -238,7 +335,6 @@ def test_a_killed_server_loses_nothing_that_was_shown(
         visit.press("Correct")
         for count, node in enumerate(visit.branches_apart(Label.SIDE_BRANCH)[:2], 1):
             visit.click_edge(node)
-            visit.reads("leaves leader")
             page.keyboard.press("Shift+Delete")
             visit.reads(f"{count} act")
         saved = (work / "oak" / "corrected.json").read_bytes()
@@ -269,6 +365,6 @@ def running(scan: Path, work: Path) -> Iterator[tuple[subprocess.Popen[str], str
 
 @contextmanager
 def a_page(browser: Any) -> Iterator[Any]:
-    page = browser.new_page(viewport={"width": 1280, "height": 800})
+    page = new_page(browser)
     yield page
     page.close()

@@ -43,6 +43,14 @@ def test_the_work_is_not_kept_upon_what_it_is_about(tmp_path: Path) -> None:
         items_in(skeleton, tmp_path)
 
 
+def test_the_folder_of_a_tree_that_was_worked_on_is_that_tree(tmp_path: Path) -> None:
+    for name in ("skeleton.json", "journal.jsonl", "graph.npz", "mask.ply"):
+        (tmp_path / "work" / "oak").mkdir(parents=True, exist_ok=True)
+        (tmp_path / "work" / "oak" / name).write_text("x")
+    (item,) = items_in(tmp_path / "work" / "oak", tmp_path / "again")
+    assert item.name == "oak" and item.source.name == "skeleton.json"
+
+
 def test_an_empty_folder_holds_nothing_to_open(tmp_path: Path) -> None:
     with pytest.raises(PrunusError, match="no point cloud"):
         items_in(tmp_path, tmp_path / "work")

@@ -5,20 +5,25 @@ from __future__ import annotations
 from pathlib import Path
 
 from prunus.corrections.acts import Act, Rebuild, Search
+from prunus.corrections.graphs import FIRST, Graphs
 from prunus.corrections.sources import skeleton_digest, superpoints_digest
-from prunus.corrections.state import State, apply
+from prunus.corrections.state import Chain, State, apply
 from prunus.corrections.timeline import Line, Timeline
 from prunus.errors import PrunusError
+from prunus.model import Floats, PointCloud
+from prunus.params import Parameters
+from prunus.pipeline import Result, skeletonize
 
 KEPT = 100
 """So many states up to the one asked for stay in memory."""
 
 
 class History:
-    """A timeline, and the state after each of its acts."""
+    """A timeline, and the state after each of its acts; `graphs` keeps what took long."""
 
-    def __init__(self, first: State, timeline: Timeline) -> None:
+    def __init__(self, first: State, timeline: Timeline, graphs: Graphs) -> None:
         self.timeline = timeline
+        self.graphs = graphs
         self._states = {0: first}
 
     @property
@@ -31,7 +36,7 @@ class History:
         known = max(k for k in self._states if k <= position)
         state = self._states[known]
         for k in range(known, position):
-            state = apply(state, self._act(k))
+            state = apply(state, self._act(k), self._chain(k))
             self._keep(k + 1, state, position)
         return state
 
@@ -49,6 +54,30 @@ class History:
         for k in [k for k in self._states if 0 < k < near - KEPT]:
             if not isinstance(self._act(k - 1), Rebuild | Search):
                 del self._states[k]
+
+    def keep(self) -> None:
+        """Keep what the machine made of the scan, first and whenever the tree was built again.
+
+        Raises PrunusError where it cannot be written.
+        """
+        if FIRST not in self.graphs:
+            self.graphs.keep(FIRST, self.at(0).result)
+        for k, line in enumerate(self.timeline.lines[: self.timeline.position]):
+            if isinstance(line.move, Rebuild) and line.number not in self.graphs:
+                self.graphs.keep(line.number, self.at(k + 1).result)
+
+    def _chain(self, number: int) -> Chain:
+        """The chain, or what it gave when an act was done."""
+        line = self.timeline.lines[number]
+
+        def fits(result: Result) -> bool:
+            return line.gives in (None, superpoints_digest(result))
+
+        def chain(cloud: PointCloud, base: Floats | None, params: Parameters, seed: int) -> Result:
+            kept = self.graphs.later(line.number, cloud, params, seed, fits)
+            return skeletonize(cloud, base, params, seed) if kept is None else kept
+
+        return chain
 
     def _act(self, number: int) -> Act:
         move = self.timeline.lines[number].move
@@ -78,8 +107,9 @@ class History:
 
 
 OTHER = (
-    "the acts name superpoints by number and cannot be done again on others. Open it with the "
-    "version of prunus that the journal names; corrected.json beside it holds what was done"
+    "the acts name superpoints by number and cannot be done again on others, and those they name "
+    "were not kept beside it. Open it with the version of prunus that the journal names; "
+    "corrected.json beside it holds what was done"
 )
 """What to do about a journal that was made on other superpoints."""
 

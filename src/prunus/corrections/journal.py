@@ -23,12 +23,13 @@ from prunus.corrections.acts import SetStatus, from_json, to_json
 from prunus.corrections.timeline import Line, Move, Timeline
 from prunus.corrections.wire import problem_in
 from prunus.errors import PrunusError
+from prunus.io.inputs import JOURNAL
 from prunus.io.safely import write_bytes
 from prunus.io.skeletons import InputRecord
 from prunus.model.cloud import FRAMES
 from prunus.params import Parameters
 
-NAME = "journal.jsonl"
+NAME = JOURNAL
 Status = Literal["new", "in work", "done"]
 
 

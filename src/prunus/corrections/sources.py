@@ -42,6 +42,10 @@ class Source:
     expected: Skeleton | None = None
 
 
+Kept = Callable[[Scan, Settings], tuple[Scan, Result] | None]
+"""Finds what the machine made of a scan before, and the scan as it was turned then."""
+
+
 @dataclass(frozen=True, eq=False)
 class Machine:
     """What the chain made of an input, from which base, and what a person should know of it."""
@@ -97,8 +101,20 @@ def unseen(scan: Scan) -> None:
     """Nobody wants to see the scan before the chain has run."""
 
 
-def run(source: Source, head: Head | None, seen: Callable[[Scan], None] = unseen) -> Machine:
-    """Run the chain on a source, as the journal on it says where there is one."""
+def unkept(scan: Scan, settings: Settings) -> tuple[Scan, Result] | None:
+    """Nothing was kept of what the machine made of a scan."""
+
+
+def run(
+    source: Source,
+    head: Head | None,
+    seen: Callable[[Scan], None] = unseen,
+    kept: Kept = unkept,
+) -> Machine:
+    """Run the chain on a source, as the journal on it says where there is one.
+
+    It is not run where what it gave when the journal was begun was kept.
+    """
     settings, base, expected, notes = source.settings, source.base, source.expected, list[str]()
     if head is not None:
         settings = Settings(
@@ -108,13 +124,15 @@ def run(source: Source, head: Head | None, seen: Callable[[Scan], None] = unseen
         if settings != source.settings:
             notes.append("frame, unit, parameters and seed are those of its journal")
     scan = open_scan(source.path, settings.frame, settings.unit)
-    seen(scan)
     if head is not None and scan.file.sha256 != head.input.sha256:
         raise PrunusError(
             f"{source.path}: is another file than its journal was made on "
             f"({head.input.file}, sha256 {head.input.sha256[:12]}...)"
         )
-    result = _chain(source.path, scan, settings, base)
+    held = None if head is None else kept(scan, settings)
+    scan = scan if held is None else held[0]
+    seen(scan)
+    result = _chain(source.path, scan, settings, base) if held is None else held[1]
     if expected is not None and not _same(result.skeleton, expected):
         base = (*expected.xyz[0].tolist(),)
         again = _chain(source.path, scan, settings, base)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,6 +18,9 @@ from prunus.errors import PrunusError
 from prunus.model import Floats, Kind, PointCloud
 from prunus.params import Parameters
 from prunus.pipeline import Result, skeletonize
+
+Chain = Callable[[PointCloud, Floats | None, Parameters, int], Result]
+"""What `Rebuild` runs: on these points, from this base, by these parameters and this seed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,8 +56,8 @@ def _kinds(result: Result) -> Kinds:
     return kind
 
 
-def apply(state: State, act: Act) -> State:
-    """The state after an act.
+def apply(state: State, act: Act, chain: Chain = skeletonize) -> State:
+    """The state after an act; `chain` is run to build the tree again.
 
     Raises Refused, with what could be done instead, where the act would leave no legal tree, and
     PrunusError where it names what is not there.
@@ -65,7 +69,7 @@ def apply(state: State, act: Act) -> State:
     if isinstance(act, Mark):
         return _marked(state, act)
     if isinstance(act, Rebuild):
-        return _rebuilt(state)
+        return _rebuilt(state, chain)
     if isinstance(act, Search):
         params, seed = state.result.params, state.result.seed
         draft = searched(state.draft, state.held, state.result.graph, params, seed)
@@ -98,7 +102,7 @@ def _marked(state: State, act: Mark) -> State:
     return replace(state, kind=kind, marked=True)
 
 
-def _rebuilt(state: State) -> State:
+def _rebuilt(state: State, chain: Chain) -> State:
     """The chain on the points that are the target."""
     target = state.kind == Kind.TARGET
     if not target.any():
@@ -108,7 +112,7 @@ def _rebuilt(state: State) -> State:
         cloud, params = cloud.take(target), params.changed("isolation", isolate="never")
     base = _base_of_next(state, cloud)
     try:
-        result = skeletonize(cloud, base, params, state.result.seed)
+        result = chain(cloud, base, params, state.result.seed)
     except PrunusError as error:
         raise Refused(f"of the points left: {error}", "holds_the_tree") from error
     kind = state.kind if state.marked else _kinds(result)

@@ -1,6 +1,7 @@
 """One tree being corrected: the one place with a state, and the files in its work folder.
 
 journal.jsonl    the acts (see `journal`)
+graph.npz        what the machine made of the scan, which the acts name (see `graphs`)
 skeleton.json    what the machine found, after `Rebuild` on the points left
 corrected.json   what a person made of it; there as long as an act stands
 mask.ply         what each point of the scan is, once points were marked
@@ -20,9 +21,11 @@ from prunus import __version__
 from prunus.corrections import journal as book
 from prunus.corrections import lock
 from prunus.corrections.acts import Act, from_json, to_json
+from prunus.corrections.graphs import Graphs
 from prunus.corrections.history import OTHER, History, gives
 from prunus.corrections.journal import End, Head, Journal
 from prunus.corrections.sources import (
+    Kept,
     Machine,
     Settings,
     run,
@@ -38,6 +41,7 @@ from prunus.io.classes import write_classes
 from prunus.io.safely import remove
 from prunus.io.skeletons import write_skeleton
 from prunus.model import Skeleton
+from prunus.pipeline import Result
 
 SKELETON, CORRECTED, MASK = "skeleton.json", "corrected.json", "mask.ply"
 
@@ -101,14 +105,23 @@ class Work:
         path = folder / book.NAME
         journal = book.read_journal(path)
         begun = journal if journal is not None and journal.lines else None
-        machine = run(source_from(source, settings), begun.head if begun else None, seen)
-        history = History(State.of(machine.result), Timeline.of(begun.lines if begun else ()))
-        notes = [*machine.notes, *(_replayed(path, begun, history) if begun else [])]
+        head = begun.head if begun else None
+        found = source_from(source, settings)
+        graphs = Graphs(folder)
+        machine = run(found, head, seen, _kept(graphs, head))
+        lines = begun.lines if begun else ()
+        history = History(State.of(machine.result), Timeline.of(lines), graphs)
+        replayed = _replayed(path, begun, history, graphs) if begun else []
+        notes = [*machine.notes, *graphs.notes, *replayed]
         work = cls(folder, machine, history, notes)
         if holder is not None:
             work.read_only = holder.told
             return work
-        work._end = book.resume(path, begun) if begun else book.begin(path, _head(machine))
+        if begun:
+            work._end = book.resume(path, begun)
+        else:
+            graphs.forget()
+            work._end = book.begin(path, _head(machine))
         work._save()
         return work
 
@@ -193,6 +206,7 @@ class Work:
     def _save(self) -> None:
         """Write what the files do not hold yet."""
         state = self.state
+        self._history.keep()
         if self._is_new(SKELETON, state.result):
             self._write_skeleton(SKELETON, state.result.skeleton, score=state.result.score)
         if self._is_new(CORRECTED, state.draft if self.position else None):
@@ -242,14 +256,30 @@ def _head(machine: Machine) -> Head:
     return Head.model_validate(told)
 
 
-def _replayed(path: Path, journal: Journal, history: History) -> list[str]:
+def _kept(graphs: Graphs, head: Head | None) -> Kept:
+    """Finds what a journal was begun on."""
+
+    def kept(scan: Scan, settings: Settings) -> tuple[Scan, Result] | None:
+        return graphs.first(scan, settings.params, settings.seed, fits)
+
+    def fits(result: Result) -> bool:
+        machine = gives("machine", State.of(result))
+        return head is not None and (superpoints_digest(result), machine) == (
+            head.superpoints,
+            head.gives,
+        )
+
+    return kept
+
+
+def _replayed(path: Path, journal: Journal, history: History, graphs: Graphs) -> list[str]:
     """Do all acts of a journal; what is to be said of them."""
     first = history.at(0)
     if superpoints_digest(first.result) != journal.head.superpoints:
         version = journal.head.version_of_prunus
         raise PrunusError(
             f"{path}:1: was made on other superpoints, by prunus {version} (this is "
-            f"{__version__}); {OTHER}"
+            f"{__version__}); {'; '.join([OTHER, *graphs.notes])}"
         )
     notes = history.replay(path)
     if gives("machine", first) != journal.head.gives:

@@ -18,6 +18,11 @@ ONE_TREE = {"cloud_final.ply": (), "scan.ply": ("trees.npz", "truth.json")}
 """Clouds that stand for their folder, and beside which of these files (none: always)."""
 
 
+JOURNAL = "journal.jsonl"
+OF_WORK = ("mask.ply", "graph.npz", "graph-*.npz")
+"""Files beside the journal of a tree that are no scans: see docs/studio.md."""
+
+
 @dataclass(frozen=True)
 class Source:
     """A file or bag, and the topic in it that was asked for, if any."""
@@ -94,6 +99,8 @@ def clouds_in(folder: Path) -> list[Path]:
 def _is_input(path: Path) -> bool:
     if path.is_dir() and is_one(path):
         return True
+    if any(path.match(name) for name in OF_WORK) and (path.parent / JOURNAL).is_file():
+        return False
     return path.suffix.lower() in (*READERS, *BAGS)
 
 

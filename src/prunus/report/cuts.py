@@ -29,9 +29,9 @@ def cut_traces(plan: Plan) -> list[Trace]:
     for name, colour, look in KINDS:
         some = [cut for cut in plan.cuts if cut.needs_review == look]
         if some:
-            discs = [_disc(np.array(cut.point), np.array(cut.blade_normal)) for cut in some]
+            discs = [disc(cut) for cut in some]
             traces += [_mesh(name, discs, colour, 0.9), _points(name, some, colour)]
-    cones = [_cone(cut) for cut in plan.cuts if cut.approach is not None]
+    cones = [cone(cut) for cut in plan.cuts if cut.approach is not None]
     if cones:
         traces.append(_mesh("free ways to the cuts", cones, WAY, 0.25) | {"visible": "legendonly"})
     return traces
@@ -63,13 +63,14 @@ def _mm(value: float) -> str:
     return f"{1e3 * value:.0f}" if math.isfinite(value) else "?"
 
 
-def _disc(point: Floats, normal: Floats) -> tuple[Floats, Ints]:
-    """A disc about a point as vertices (V, 3) and triangles (F, 3)."""
-    return _fan(point, point, normal, BLADE)
+def disc(cut: Cut) -> tuple[Floats, Ints]:
+    """The blade of a cut, house frame, as vertices (V, 3) and triangles (F, 3)."""
+    point = np.array(cut.point)
+    return _fan(point, point, np.array(cut.blade_normal), BLADE)
 
 
-def _cone(cut: Cut) -> tuple[Floats, Ints]:
-    """The free cone of a cut, its tip at the cut; at least a needle."""
+def cone(cut: Cut) -> tuple[Floats, Ints]:
+    """The free cone of a cut with a way to it, its tip at the cut; at least a needle."""
     assert cut.approach is not None
     way = -np.array(cut.approach.direction)
     wide = LONG * math.tan(math.radians(min(max(cut.approach.half_angle, 1.0), 60.0)))
@@ -88,10 +89,16 @@ def _fan(tip: Floats, middle: Floats, normal: Floats, radius: float) -> tuple[Fl
     return np.concatenate([tip[None], middle + radius * ring]), faces
 
 
-def _mesh(name: str, parts: list[tuple[Floats, Ints]], colour: str, opacity: float) -> Trace:
+def joined(parts: list[tuple[Floats, Ints]]) -> tuple[Floats, Ints]:
+    """Vertices (V, 3) and triangles (F, 3) of one or more meshes as those of one."""
     start = np.cumsum([0, *(len(vertices) for vertices, _ in parts)])
-    xyz = np.round(np.concatenate([vertices for vertices, _ in parts]), 4)
-    faces = np.concatenate([f + s for (_, f), s in zip(parts, start, strict=False)])
+    faces = [corners + first for (_, corners), first in zip(parts, start, strict=False)]
+    return np.concatenate([vertices for vertices, _ in parts]), np.concatenate(faces)
+
+
+def _mesh(name: str, parts: list[tuple[Floats, Ints]], colour: str, opacity: float) -> Trace:
+    xyz, faces = joined(parts)
+    xyz = np.round(xyz, 4)
     corners = {key: faces[:, i].tolist() for i, key in enumerate("ijk")}
     places = {axis: xyz[:, i].tolist() for i, axis in enumerate("xyz")}
     look = {"color": colour, "opacity": opacity, "hoverinfo": "skip", "showlegend": True}

@@ -65,7 +65,7 @@ def report_page(
     `plan` is its pruning plan, in the house frame.
     """
     library = _plotly_library()
-    traces = scene_traces(result.in_house, result.graph)
+    traces = scene_traces(result.in_house, result.refined.skeleton, result.graph)
     if plan is not None:
         traces += cut_traces(plan)
     if result.isolated is not None:

@@ -7,12 +7,17 @@ from typing import Any
 import numpy as np
 
 from prunus.io.export import COLOURS
+from prunus.measure import branches
 from prunus.model import Floats, Ints, Kind, Label, PointCloud, SeededGraph, Skeleton
 
 MOST_POINTS = 40_000
 """More points of the cloud would make the page slow, not clearer."""
 CLASSES = ((0.8, 1.01, "#7a5195"), (0.4, 0.8, "#bc7fbf"), (0.0, 0.4, "#d9d0dd"))
 """Confidence classes of candidate edges: from, up to, colour."""
+
+REFINED = "#222222"
+GAP = np.full((1, 3), np.nan)
+"""Ends a line."""
 
 LEFT_OUT = {
     Kind.NEIGHBOUR: "#b8860b",
@@ -27,13 +32,14 @@ LEFT_OUT = {
 Trace = dict[str, Any]
 
 
-def scene_traces(skeleton: Skeleton, graph: SeededGraph) -> list[Trace]:
-    """Traces of a skeleton and its graph, both in the house frame."""
+def scene_traces(skeleton: Skeleton, fine: Skeleton, graph: SeededGraph) -> list[Trace]:
+    """Traces of a skeleton, the same refined, and its graph, all in the house frame."""
     return [
         _cloud(graph),
         *(_branch(skeleton, label) for label in Label),
         _points("base", skeleton.xyz[:1], "#cc0000", 7, "diamond"),
         _points("tips", graph.xyz[graph.tips], "#cc79a7", 5, "diamond"),
+        _refined(fine),
         _points("superpoints", graph.xyz, "#888888", 3, "circle", shown=False),
         *(_candidates(graph, low, high, colour) for low, high, colour in CLASSES),
     ]
@@ -65,6 +71,22 @@ def _branch(skeleton: Skeleton, label: Label) -> Trace:
     pairs = np.column_stack([skeleton.parent[rows], rows])
     colour = "#{:02x}{:02x}{:02x}".format(*COLOURS[label])
     return _lines(label.word.replace("_", " "), skeleton.xyz, pairs, colour, 9)
+
+
+def _refined(skeleton: Skeleton) -> Trace:
+    """The refined skeleton, a line a branch, and how thick it is; to switch on."""
+    runs = [np.append(branch.rows, -1) for branch in branches(skeleton)] or [np.array([-1])]
+    rows = np.concatenate(runs)
+    xyz = np.concatenate([skeleton.xyz, GAP])[rows]
+    radius = np.append(skeleton.radius, np.nan)[rows]
+    return {
+        **_columns(xyz),
+        **_common("refined", shown=False),
+        "mode": "lines",
+        "line": {"width": 4, "color": REFINED},
+        "text": ["" if np.isnan(r) else f"{2e3 * r:.0f} mm thick" for r in radius.tolist()],
+        "hoverinfo": "text",
+    }
 
 
 def _candidates(graph: SeededGraph, low: float, high: float, colour: str) -> Trace:

@@ -32,6 +32,8 @@ CLOSE = 0.18
 """The close view shows so many metres around an edge."""
 TOLD, CONTROLS = 240, 350
 """Width of the panel on the left, which tells, and of that on the right, pixels."""
+ON = "\N{BLACK CIRCLE}"
+"""Marks the mode that is on."""
 
 
 class Desk:
@@ -76,6 +78,7 @@ class Desk:
             self.painter.clear()
             self.number, self.picture, self.picked, self.framed = number, None, None, False
             self.tree.watch(self.refresh)
+            self.mode.enter()
             self.redraw()
 
     def close(self) -> None:
@@ -85,15 +88,16 @@ class Desk:
             self.tree.leave(self.refresh)
 
     def choose(self, name: str) -> None:
-        """Work in another mode."""
+        """Work in another mode; what it says is seen once its keys are heard."""
         with self.lock:
             self.refusal.clear()
             self.mode.leave()
             self.mode = next(mode for mode in self.modes if mode.name == name)
-            for mode, folder in zip(self.modes, self.folders, strict=True):
-                folder.visible = mode is self.mode
             self._hold_keys()
             self.mode.enter()
+            self._offer_modes()
+            for mode, folder in zip(self.modes, self.folders, strict=True):
+                folder.visible = mode is self.mode
             self.redraw()
 
     def refresh(self) -> None:
@@ -254,10 +258,7 @@ class Desk:
         self.gui.main_panel.set_width(CONTROLS)
         self.folder = FolderPanel(self)
         self.folder.build()
-        names = tuple(mode.name for mode in self.modes)
-        if len(names) > 1:
-            chosen = self.gui.add_button_group("Mode", names)
-            chosen.on_click(lambda event: self.choose(event.target.value))
+        self.offered = self.gui.add_button_group("Mode", ("",))
         self.folders = []
         for mode in self.modes:
             folder = self.gui.add_folder(mode.name)
@@ -266,6 +267,15 @@ class Desk:
                 mode.build()
         self.show.build()
         self._build_told()
+
+    def _offer_modes(self) -> None:
+        """The modes as buttons, the one that is on marked; none of them holds the keyboard."""
+        names = {f"{ON} {mode.name}" if mode is self.mode else mode.name: mode.name
+                 for mode in self.modes}  # fmt: skip
+        order = self.offered.order
+        self.offered.remove()
+        self.offered = self.gui.add_button_group("Mode", tuple(names), order=order)
+        self.offered.on_click(lambda event: self.choose(names[event.target.value]))
 
     def _build_told(self) -> None:
         """The panel on the left: how the tree stands, what was refused, what is picked."""

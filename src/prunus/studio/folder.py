@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from prunus.corrections import SetStatus
-from prunus.studio.modes.mode import Key, put, watch
+from prunus.studio.modes.mode import Key, freed, put, watch
 
 if TYPE_CHECKING:
     from prunus.studio.desk import Desk
@@ -21,7 +21,7 @@ class FolderPanel:
         """Make the controls; one tree alone has no list."""
         gui = self.desk.gui
         several = len(self.desk.trees) > 1
-        self.list = gui.add_dropdown("Tree", self._options(), visible=several)
+        self.list = freed(gui.add_dropdown("Tree", self._options(), visible=several))
         watch(self.list, self._chosen)
         put(self.list, self.list.options[self.desk.number])
         names = ("previous", "next", "done") if several else ("done",)

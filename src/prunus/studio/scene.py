@@ -10,8 +10,9 @@ import viser
 from numpy.typing import NDArray
 
 from prunus.io.export import COLOURS
-from prunus.model import Floats, Kind, Label
+from prunus.model import Floats, Ints, Kind, Label
 from prunus.model.arrays import Bytes
+from prunus.report.cuts import joined
 from prunus.report.scene import CLASSES
 from prunus.studio.picture import Colour, Picture, Slab, colour_of, colours_of, thinned
 
@@ -168,6 +169,25 @@ class Painter:
                 precision="float32", scale=1 - nearer(name),
             )  # fmt: skip
             self.drawn[name] = Drawn(held.tobytes(), (colour.shape, size), colour.tobytes(), handle)
+
+    def mesh(
+        self, name: str, parts: list[tuple[Floats, Ints]], colour: Colour, opacity: float
+    ) -> None:
+        """Surfaces of one colour, each vertices (V, 3) and triangles; none takes them away.
+
+        Plainly lit: the usual material takes a browser without a GPU ten seconds to begin with.
+        """
+        if not parts:
+            self._remove(name)
+            return
+        xyz, faces = joined(parts)
+        held = xyz.astype(np.float32)
+        if not self._stands(name, held, (colour, opacity)):
+            handle = self.scene.add_mesh_simple(
+                name, held, faces.astype(np.uint32), color=colour, opacity=opacity, side="double",
+                material="toon3", cast_shadow=False, receive_shadow=False, scale=1 - nearer(name),
+            )  # fmt: skip
+            self.drawn[name] = Drawn(held.tobytes(), (colour, opacity), b"", handle)
 
     def clear(self) -> None:
         """Take all away."""

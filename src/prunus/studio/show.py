@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import viser
 
 from prunus.studio.camera import VIEWS
-from prunus.studio.modes.mode import Key, put, watch
+from prunus.studio.modes.mode import Key, freed, put, watch
 from prunus.studio.picture import MOST_POINTS, Picture, Slab
 from prunus.studio.scene import LAYERS, Wishes, without
 
@@ -92,9 +92,13 @@ class Show:
     def _points(self) -> None:
         gui = self.desk.gui
         self._box("points")
-        self.colour = gui.add_dropdown("Colour", COLOURS, hint="depth: red in front, blue behind")
+        self.colour = freed(
+            gui.add_dropdown("Colour", COLOURS, hint="depth: red in front, blue behind")
+        )
         watch(self.colour, lambda value: self._wish(colour=value))
-        self.others = gui.add_checkbox("others", False, hint="What is not the tree: ground, posts")
+        self.others = freed(
+            gui.add_checkbox("others", False, hint="What is not the tree: ground, posts")
+        )
         watch(self.others, lambda value: self._wish(others=value))
         share = gui.add_slider("Share [%]", 1, 100, 1, 100, hint=f"Of at most {MOST_POINTS:,}")
         watch(share, lambda value: self._wish(share=value / 100))
@@ -102,7 +106,8 @@ class Show:
         watch(size, lambda value: self._wish(size=value / 1000))
 
     def _box(self, layer: str) -> None:
-        box = self.desk.gui.add_checkbox(layer.replace("_", " "), layer in self.wishes.layers)
+        shown = layer in self.wishes.layers
+        box = freed(self.desk.gui.add_checkbox(layer.replace("_", " "), shown))
         self.boxes[layer] = box
         watch(box, lambda shown: self._switch(layer, shown))
 

@@ -9,8 +9,11 @@ from prunus.corrections import Act, Settings, State, Work, branch_names, status_
 from prunus.errors import PrunusError
 from prunus.evaluate.edits import Edits, edits
 from prunus.intake import Scan
+from prunus.io.plans import write_plan
+from prunus.measure.cuts import Plan
 from prunus.model import PointCloud, Skeleton
 from prunus.studio.picture import Picture
+from prunus.studio.planned import PLAN, file_of, told_of_file
 from prunus.studio.shelf import Item
 
 Told = Callable[[], None]
@@ -79,6 +82,25 @@ class Tree:
             done = self._opened().redo() is not None
         self._tell()
         return done
+
+    def save_plan(self, plan: Plan) -> None:
+        """Write the plan of the work as it stands; PrunusError where the tree is read-only."""
+        with self.lock:
+            work = self.own()
+            write_plan(work.folder / PLAN, file_of(plan, work))
+
+    def told_of_plan(self, plan: Plan) -> str:
+        """Whether a plan of the work as it stands was saved, in words."""
+        with self.lock:
+            work = self._opened()
+            return told_of_file(work.folder / PLAN, file_of(plan, work))
+
+    def own(self) -> Work:
+        """The work, to be written to; PrunusError where somebody else has the tree open."""
+        work = self._opened()
+        if work.read_only is not None:
+            raise PrunusError(f"the tree is open at {work.read_only}; here it is read-only")
+        return work
 
     @property
     def state(self) -> State | None:

@@ -8,8 +8,10 @@ from html import escape
 import numpy as np
 
 from prunus.io.export import COLOURS
+from prunus.measure.cuts import Cut, Plan
 from prunus.model import Floats, Label
-from prunus.studio.picture import KINDS, Picture
+from prunus.report.cuts import LOOK, SURE
+from prunus.studio.picture import KINDS, Picture, colour_of
 
 STYLE = "padding:2px 12px 8px;font-size:13px;line-height:1.45;overflow-wrap:anywhere"
 
@@ -87,6 +89,43 @@ def card(picture: Picture, row: int) -> str:
         "confidence " + ("unknown" if math.isnan(sure) else f"{sure:.2f}"),
         quiet(f"node {picture.nodes[row]}"),
     )
+
+
+def plan_card(plan: Plan, chosen: Cut | None, every: bool) -> str:
+    """How many cuts there are, and those that are to be looked at, or all; the chosen one bold."""
+    looked = [cut for cut in plan.cuts if cut.needs_review]
+    shown = [
+        f"<b>{escape(cut.branch)}</b>" if cut is chosen else escape(cut.branch)
+        for cut in (plan.cuts if every else looked)
+    ]
+    return block(
+        f"{_dot(colour_of(SURE))}{len(plan.cuts) - len(looked)} cuts by themselves",
+        f"{_dot(colour_of(LOOK))}{len(looked)} for a person to look at first",
+        ", ".join(shown),
+    )
+
+
+def cut_card(cut: Cut) -> str:
+    """What is known of a cut, and why a person should look."""
+    way = cut.approach
+    doubt = f" &plusmn; {_mm(cut.diameter_error)}" if math.isfinite(cut.diameter_error) else ""
+    litres = math.isfinite(cut.removed_volume)
+    volume = f", {1e6 * cut.removed_volume:.0f} cm&sup3;" if litres else ""
+    reasons = [loud(reason) for reason in cut.reasons]
+    return block(
+        f"<b>{escape(cut.branch)}</b> {quiet(cut.rule.replace('_', ' '))}",
+        escape(cut.because),
+        f"{_mm(cut.diameter)}{doubt} mm thick"
+        + (f", stub {_mm(cut.stub)} mm" if math.isfinite(cut.stub) else ""),
+        f"{cut.removed_length:.2f} m of wood come down{volume}",
+        "" if way is None else f"the way to it has {way.half_angle:.0f}&deg; free",
+        f"confidence {cut.confidence:.2f}",
+        *(["look first:", *reasons] if reasons else [quiet("nothing is doubtful")]),
+    )
+
+
+def _mm(value: float) -> str:
+    return f"{1e3 * value:.0f}" if math.isfinite(value) else "?"
 
 
 def _angle(one: Floats, other: Floats) -> float | None:

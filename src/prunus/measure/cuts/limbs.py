@@ -81,11 +81,11 @@ class Limbs:
     owner: Ints
 
     @classmethod
-    def of(cls, skeleton: Skeleton) -> Limbs:
-        """The limbs of a skeleton in the house frame (Z up)."""
+    def of(cls, skeleton: Skeleton, names: list[str] | None = None) -> Limbs:
+        """The limbs of a skeleton in the house frame (Z up); `names` of its branches, if known."""
         found = branches(skeleton)
         owner = branch_of_rows(found, len(skeleton))
-        names = branch_names(skeleton, found)
+        names = names or branch_names(skeleton, found)
         far = _farthest(skeleton)
         limbs: list[Limb] = []
         for number, branch in enumerate(found):

@@ -14,7 +14,7 @@ from prunus.errors import PrunusError
 from prunus.model import Kind
 from prunus.studio.camera import Eye
 from prunus.studio.modes.history import History
-from prunus.studio.modes.mode import Key, Mode, put, watch
+from prunus.studio.modes.mode import Key, Mode, freed, put, watch
 from prunus.studio.picking import Ray, first_point
 from prunus.studio.scene import PICKED, Wishes
 from prunus.studio.words import block, kinds, quiet
@@ -46,14 +46,14 @@ class Clean(Mode):
         self.corners: list[tuple[float, float]] = []
         self.eye: Eye | None = None
         self.before: Wishes | None = None
-        self.kind = gui.add_dropdown("Mark as", KINDS, initial_value=KINDS[Kind.STRAY],
-                                     hint="target: the tree. Keys 0 to 6")  # fmt: skip
-        self.tool = gui.add_dropdown("With", tuple(TOOLS))
+        self.kind = freed(gui.add_dropdown("Mark as", KINDS, initial_value=KINDS[Kind.STRAY],
+                                           hint="target: the tree. Keys 0 to 6"))  # fmt: skip
+        self.tool = freed(gui.add_dropdown("With", tuple(TOOLS)))
         watch(self.tool, lambda value: self._ask())
         self.asked = gui.add_html(block(quiet(TOOLS["box"])))
         self.radius = gui.add_slider("Brush [cm]", 1, 30, 1, 5)
         self.gap = gui.add_slider("Gap [cm]", 1, 30, 1, 5, hint="A piece goes on over such gaps")
-        self.whole = gui.add_dropdown("All of", KINDS, initial_value=KINDS[Kind.GROUND])
+        self.whole = freed(gui.add_dropdown("All of", KINDS, initial_value=KINDS[Kind.GROUND]))
         marks = gui.add_button_group("", ("mark all of it",))
         marks.on_click(lambda event: self.desk.try_to(self._whole))
         again = gui.add_button(

@@ -20,7 +20,7 @@ from prunus.corrections import (
 from prunus.errors import PrunusError
 from prunus.model import Label
 from prunus.studio.modes.history import History
-from prunus.studio.modes.mode import Key, Mode, put
+from prunus.studio.modes.mode import Key, Mode, freed, put, watch
 from prunus.studio.modes.path import Path, Scope
 from prunus.studio.picking import Ray
 from prunus.studio.scene import PICKED
@@ -51,16 +51,22 @@ class Correct(Mode):
         self.asked = gui.add_html(block(quiet(ASKS["pick"])))
         self._group("Remove", {"edge": self._remove_edge, "branch": self._remove_branch},
                     "Delete, Shift Delete")  # fmt: skip
-        self.reach = gui.add_dropdown("Relabel the", tuple(REACHES.values()),
-                                      hint="onward: from here to the tip; until: from its start to "
-                                      "here. Keys B, I, O, U")  # fmt: skip
+        self.reach = freed(gui.add_dropdown(
+            "Relabel the", tuple(REACHES.values()),
+            hint="onward: from here to the tip; until: from its start to here. Keys B, I, O, U",
+        ))  # fmt: skip
         self._group("as", {word: self._labels(Label(n)) for n, word in enumerate(WORDS)},
                     "Keys 1 to 4")  # fmt: skip
         self._group("Path", {"new": self._begin, "end": self._end, "give up": self._stop},
                     "P, Enter, Escape")  # fmt: skip
-        self.label = gui.add_dropdown("Path is", WORDS, initial_value=WORDS[-1])
-        self.routed = gui.add_checkbox("routed", True, hint="Along the likeliest candidate edges")
-        self.snaps = gui.add_checkbox("at superpoints", True, hint="Else at points of the scan")
+        self.label = freed(gui.add_dropdown("Path is", WORDS, initial_value=WORDS[-1]))
+        self.routed = freed(
+            gui.add_checkbox("routed", True, hint="Along the likeliest candidate edges")
+        )
+        watch(self.routed, lambda value: self.redraw())
+        self.snaps = freed(
+            gui.add_checkbox("at superpoints", True, hint="Else at points of the scan")
+        )
         self._group("Move", {"edge": self._reattach, "base": self._base}, "N, M")
         self._group("Search", {"again, holding this": self._search})
         self.history.build()
@@ -96,13 +102,13 @@ class Correct(Mode):
         self._stop()
 
     def redraw(self) -> None:
-        """The stops of the path, which the tree may have come to hold."""
-        picture = self.desk.picture
-        xyz = np.zeros((0, 3))
-        if picture is not None and self.path.stops:
-            xyz = self.path.places(self._scope())
+        """The stops of the path, which the tree may have come to hold, and the way over them."""
+        xyz = way = np.zeros((0, 3))
+        if self.desk.picture is not None and self.path.stops:
+            scope = self._scope()
+            xyz, way = self.path.places(scope), self.path.way(scope, self.routed.value)
         self.desk.painter.places("stops", xyz, PICKED)
-        self.desk.painter.mark("stops-line", np.stack([xyz[:-1], xyz[1:]], axis=1), PICKED, 3.0)
+        self.desk.painter.mark("stops-line", np.stack([way[:-1], way[1:]], axis=1), PICKED, 3.0)
 
     def clicked(self, ray: Ray, screen: tuple[float, float]) -> None:
         """What the tool asked for."""

@@ -107,6 +107,7 @@ class Label(Mode):
 
     def _says(self, valid: bool, category: Category | None = None) -> Callable[[], None]:
         def say() -> None:
+            self.desk.tree.own()
             self._queue().say(valid, category)
             self._show()
             self.desk.folder.tell()
@@ -122,6 +123,7 @@ class Label(Mode):
         self._show()
 
     def _take_back(self) -> None:
+        self.desk.tree.own()
         self._queue().say(None, None)
         self._show()
 

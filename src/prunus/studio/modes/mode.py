@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -34,6 +35,27 @@ def watch(control: Any, does: Callable[[Any], None]) -> None:
     def _(event: Any) -> None:
         if event.client is not None:
             does(event.target.value)
+
+
+AWAY = 0.1
+"""A control is away so long, seconds, that the page has seen it."""
+
+
+def freed(control: Any) -> Any:
+    """The same control, which gives the keyboard back to the page once a person has chosen.
+
+    A field that has the cursor keeps all keys to itself; one that was away has it no more.
+    """
+
+    @control.on_update  # type: ignore[untyped-decorator]
+    def _(event: Any) -> None:
+        if event.client is not None:
+            control.visible = False
+            event.client.flush()
+            time.sleep(AWAY)
+            control.visible = True
+
+    return control
 
 
 class Mode:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.corrections import State
+from prunus.corrections import AddPath, State
+from prunus.corrections.state import clear
 from prunus.corrections.wire import Place
 from prunus.errors import PrunusError
 from prunus.model import Floats, Label
@@ -98,4 +101,18 @@ class Path:
 
     def places(self, scope: Scope) -> Floats:
         """The stops (Q, 3) in the house frame."""
-        return np.array([scope.at(stop) for stop in self.stops]).reshape(-1, 3)
+        return _places(scope, self.stops)
+
+    def way(self, scope: Scope, routed: bool) -> Floats:
+        """The way (R, 3) over the stops as it would be added; straight where there is no other."""
+        stops = tuple(self.stops)
+        if routed and len(stops) > 1:
+            with contextlib.suppress(PrunusError):
+                act = clear(scope.state, AddPath(stops, Label.SIDE_BRANCH, routed=True))
+                assert isinstance(act, AddPath)
+                stops = act.stops
+        return _places(scope, stops)
+
+
+def _places(scope: Scope, stops: Iterable[Place]) -> Floats:
+    return np.array([scope.at(stop) for stop in stops]).reshape(-1, 3)

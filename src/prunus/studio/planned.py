@@ -1,0 +1,82 @@
+"""The pruning plan of a tree as it is corrected so far."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from prunus.corrections import State, Work
+from prunus.corrections.draft import pair_of
+from prunus.cutting import plan_file
+from prunus.errors import PrunusError
+from prunus.io.plans import PlanFile, read_plan
+from prunus.measure import branches
+from prunus.measure.cuts import Plan, plan_cuts
+from prunus.measure.names import branch_names
+from prunus.measure.refine import refined
+from prunus.model import Kind, Skeleton
+from prunus.pipeline import REFINED_WITH
+
+PLAN = "plan.json"
+
+
+@dataclass(frozen=True, eq=False)
+class Planned:
+    """A plan, the refined skeleton that it was made on, and a node of each branch by its name."""
+
+    plan: Plan
+    skeleton: Skeleton
+    node: dict[str, int]
+
+
+def planned(state: State) -> Planned:
+    """The plan by the shipped rules, house frame; takes some tenths of a second.
+
+    The tree is refined to the points that are marked as its own. Branches have the names that
+    they have on the page: refining keeps their order.
+    """
+    own = state.scan.take(state.kind == Kind.TARGET)
+    points = own.sample(REFINED_WITH, np.random.default_rng(state.result.seed))
+    coarse = _vouched(state)
+    tree = refined(coarse, points)
+    names = branch_names(coarse, branches(coarse))
+    plan = plan_cuts(tree, state.scan.xyz, names=names)
+    return Planned(plan, tree.skeleton, _nodes(coarse, names))
+
+
+def _vouched(state: State) -> Skeleton:
+    """The tree with its nodes in place of superpoints; what a person told of it is sure.
+
+    So it is for a new search; of a branch drawn by hand the machine knows no confidence.
+    """
+    tree = state.draft.numbered()
+    nodes = tree.superpoint.tolist()
+    pairs = [pair_of(nodes[above], node) for above, node in zip(tree.parent, nodes, strict=True)]
+    told = np.array([pair in state.held.label for pair in pairs])
+    return replace(tree, confidence=np.where(told, 1.0, tree.confidence))
+
+
+def _nodes(tree: Skeleton, names: list[str]) -> dict[str, int]:
+    """The first node of each branch, by its name."""
+    firsts = (int(tree.superpoint[branch.rows[1]]) for branch in branches(tree))
+    return dict(zip(names, firsts, strict=True))
+
+
+def file_of(plan: Plan, work: Work) -> PlanFile:
+    """The plan of the work as it stands, as `plan.json` has it."""
+    name = "corrected.json" if work.position else "skeleton.json"
+    scan = work.scan
+    return plan_file(plan, scan.cloud.to_input, skeleton=name, input=scan.record, notes=scan.notes)
+
+
+def told_of_file(path: Path, file: PlanFile) -> str:
+    """Whether a plan is in a file, in words."""
+    if not path.exists():
+        return "not saved"
+    try:
+        same = read_plan(path) == file
+    except PrunusError as error:
+        return f"cannot be read: {error}"
+    return f"saved in {path.name}" if same else f"{path.name} is of the tree as it was before"
