@@ -7,16 +7,16 @@ from shutil import copyfile
 import pytest
 
 from prunus.corrections import Mark, SetStatus, Work, status_of
-from prunus.corrections.history import gives
+from prunus.corrections.history import OTHER, gives
 from prunus.corrections.journal import read_journal
+from prunus.errors import PrunusError
 from prunus.evaluate.edits import edits
 from prunus.judge import compare
 from prunus.measure import branches, leaders
 from prunus.model import Kind, Label
 from prunus.rules import offenders
 
-DATA = Path(__file__).parents[1] / "data"
-JOURNAL, GRAPH = DATA / "ufo_tree0.journal.jsonl", DATA / "ufo_tree0.graph.npz"
+JOURNAL = Path(__file__).parents[1] / "data" / "ufo_tree0.journal.jsonl"
 
 
 @pytest.fixture(scope="module")
@@ -24,8 +24,13 @@ def corrected(real_scan: Path, tmp_path_factory: pytest.TempPathFactory) -> Iter
     """The tree with all that was done to it."""
     folder = tmp_path_factory.mktemp("real")
     copyfile(JOURNAL, folder / "journal.jsonl")
-    copyfile(GRAPH, folder / "graph.npz")
-    with Work.open(real_scan, folder) as work:
+    try:
+        work = Work.open(real_scan, folder)
+    except PrunusError as error:
+        if OTHER not in str(error):
+            raise
+        pytest.skip("the chain gives other superpoints than when the scan was corrected")
+    with work:
         yield work
 
 
