@@ -10,9 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.measure.branches import Branch
+from prunus.measure.branches import Branch, branches
 from prunus.measure.centrelines import lines_of
 from prunus.measure.fitting import Fit, fitted
+from prunus.measure.names import branch_names
 from prunus.measure.radii import Unknown
 from prunus.measure.ribbons import supported
 from prunus.model import Bools, Floats, Ints, PointCloud, Skeleton
@@ -24,13 +25,21 @@ class Refined:
 
     `skeleton` has a node about every centimetre; `superpoint` is kept at the node that stands for
     it, -1 elsewhere. `radius_error` is the standard deviation of the radius, metres; `unknown` why
-    a radius is NaN (see `Unknown`); `seen` whether points of the scan lie at the node.
+    a radius is NaN (see `Unknown`); `seen` whether points of the scan lie at the node. `named` are
+    the names of the branches before they were refined, if they were.
     """
 
     skeleton: Skeleton
     radius_error: Floats
     unknown: Ints
     seen: Bools
+    named: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> list[str]:
+        """The names of the branches: refining moves them, and would number them otherwise."""
+        found = branches(self.skeleton)
+        return list(self.named) or branch_names(self.skeleton, found)
 
     @property
     def reason(self) -> list[str]:
@@ -88,7 +97,8 @@ def _assembled(skeleton: Skeleton, found: list[Branch], fit: Fit) -> Refined:
         lines.xyz[station], parent, skeleton.label[old], skeleton.confidence[old], radius,
         np.where(stands, skeleton.superpoint[old], -1),
     )  # fmt: skip
-    return Refined(tree, error, taper.unknown[station], supported(lines, fit.count)[station])
+    seen, names = supported(lines, fit.count)[station], branch_names(skeleton, found)
+    return Refined(tree, error, taper.unknown[station], seen, tuple(names))
 
 
 def _standing(line: Floats, places: Floats) -> Ints:

@@ -13,7 +13,6 @@ import numpy as np
 from prunus.measure.branches import branch_of_rows, branches, orders
 from prunus.measure.defined import BRANCH_TRAITS, TREE_TRAITS, ZONES
 from prunus.measure.leaders import leaders
-from prunus.measure.names import branch_names
 from prunus.measure.refine import Refined
 from prunus.measure.sizes import Limb, Record
 from prunus.measure.trust import Trust
@@ -24,7 +23,7 @@ def branch_traits(tree: Refined, trust: Trust | None = None) -> list[Record]:
     """The traits of each branch (see `BRANCH_TRAITS`); without `trust` that is NaN."""
     skeleton = tree.skeleton
     found = branches(skeleton)
-    names, order = branch_names(skeleton, found), orders(found, len(skeleton))
+    names, order = tree.names, orders(found, len(skeleton))
     owner = branch_of_rows(found, len(skeleton))
     spacing = {leader.row: leader.spacing for leader in leaders(skeleton)}
     carried = [int(owner[b.rows[0]]) for b in found if b.label == Label.SIDE_BRANCH]

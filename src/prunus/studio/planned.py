@@ -14,7 +14,6 @@ from prunus.errors import PrunusError
 from prunus.io.plans import PlanFile, read_plan
 from prunus.measure import branches
 from prunus.measure.cuts import Plan, plan_cuts
-from prunus.measure.names import branch_names
 from prunus.measure.refine import refined
 from prunus.model import Kind, Skeleton
 from prunus.pipeline import REFINED_WITH
@@ -41,9 +40,8 @@ def planned(state: State) -> Planned:
     points = own.sample(REFINED_WITH, np.random.default_rng(state.result.seed))
     coarse = _vouched(state)
     tree = refined(coarse, points)
-    names = branch_names(coarse, branches(coarse))
-    plan = plan_cuts(tree, state.scan.xyz, names=names)
-    return Planned(plan, tree.skeleton, _nodes(coarse, names))
+    plan = plan_cuts(tree, state.scan.xyz)
+    return Planned(plan, tree.skeleton, _nodes(coarse, tree.names))
 
 
 def _vouched(state: State) -> Skeleton:

@@ -70,17 +70,15 @@ def plan_cuts(
     tree: Refined | Skeleton,
     scan: Floats | None = None,
     rules: CutRules | None = None,
-    names: list[str] | None = None,
 ) -> Plan:
     """The pruning plan of a tree in the house frame.
 
     scan: all points (P, 3) around the tree, house frame, its own among them; without them no way
-    to a cut is known, and every cut is reviewed. A plain skeleton has the radii it holds. `names`
-    of its branches; else they are numbered along the row.
+    to a cut is known, and every cut is reviewed. A plain skeleton has the radii it holds.
     """
     rules = rules or shipped_rules()
     tree = tree if isinstance(tree, Refined) else as_it_is(tree)
-    limbs = Limbs.of(tree.skeleton, names)
+    limbs = Limbs.of(tree.skeleton, tree.names)
     said = verdicts(limbs, rules)
     demands = [one for one in said if isinstance(one, Demand)]
     places = np.array([one.limb.at(one.along) for one in demands]).reshape(-1, 3)
