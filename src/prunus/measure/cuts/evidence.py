@@ -14,8 +14,8 @@ from prunus.measure.cuts.rules import Demand
 from prunus.measure.refine import Refined
 from prunus.model import Floats
 
-OUTSET, ONWARD = 0.04, 0.12
-"""A branch bends at its foot when its first so many metres turn into those up to there."""
+BESIDE = 0.12
+"""How steeply a limb rises is asked of the stretch within so many metres."""
 TINY = 1e-9
 
 
@@ -70,7 +70,7 @@ def evidence_of(limbs: Limbs, tree: Refined, demand: Demand, points: Nearby | No
         diameter=diameter,
         doubt=2 * limb.value_at(demand.along, tree.radius_error),
         thick=diameter / (2 * radius),
-        bend=_bend(limb),
+        bend=limb.bend,
         slant=limb.bark / radius,
         touch=touch,
         touched=touched,
@@ -85,15 +85,9 @@ def _parent_radius(limbs: Limbs, limb: Limb) -> float:
     return radius if math.isfinite(radius) or parent is None else LIKELY_RADIUS[parent.label]
 
 
-def _bend(limb: Limb) -> float:
-    """The turn, degrees, between the first of a branch outside the bark and what comes then."""
-    foot, knee, on = (limb.at(limb.bark + way) for way in (0.0, OUTSET, ONWARD))
-    return math.degrees(math.acos(np.clip(_unit(knee - foot) @ _unit(on - knee), -1, 1)))
-
-
 def _rise(parent: Limb, foot: Floats) -> float:
     """How steeply a limb rises about a place on it, degrees."""
-    stretch = parent.xyz[np.linalg.norm(parent.xyz - foot, axis=1) <= ONWARD]
+    stretch = parent.xyz[np.linalg.norm(parent.xyz - foot, axis=1) <= BESIDE]
     if len(stretch) < 2:
         stretch = parent.xyz
     return math.degrees(math.asin(abs(_unit(stretch[-1] - stretch[0])[2])))
