@@ -126,7 +126,7 @@ def _on(limb: Limb, point: Floats) -> tuple[float, float]:
         return float(np.linalg.norm(off - before * first)), before
     away = away_from(point[None], limb.xyz)[0]
     steps = np.arange(0, limb.along[-1] + 1e-9, 0.001)
-    dense = np.array([limb.at(step) for step in steps])
+    dense = np.column_stack([np.interp(steps, limb.along, limb.xyz[:, axis]) for axis in range(3)])
     return float(away), float(steps[np.linalg.norm(dense - point, axis=1).argmin()])
 
 

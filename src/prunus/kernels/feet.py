@@ -51,7 +51,14 @@ def within_parents(xyz: Floats, start: Ints, parent: Ints, half: Floats) -> Flag
 
 @kernel
 def feet(
-    xyz: Floats, start: Ints, parent: Ints, inside: Flags, ahead: int, slide: int, held: float
+    xyz: Floats,
+    start: Ints,
+    parent: Ints,
+    inside: Flags,
+    home: Floats,
+    ahead: int,
+    slide: int,
+    held: float,
 ) -> Ints:
     """The station (B,) of the parent from which each line leaves; -1 where it has no parent.
 
@@ -76,7 +83,7 @@ def feet(
             way[a] = xyz[far, a] - xyz[out, a]
             length += way[a] ** 2
         way /= max(np.sqrt(length), TINY)
-        now = nearest_station(xyz, start[p], start[p + 1], xyz[start[b]])
+        now = nearest_station(xyz, start[p], start[p + 1], home[b])
         least = np.inf
         for s in range(max(now - slide, start[p] + 1), min(now + slide + 1, start[p + 1] - 1)):
             back, away, moved = 0.0, 0.0, 0.0
@@ -84,7 +91,7 @@ def feet(
                 step = xyz[s, a] - xyz[out, a]
                 back += step * way[a]
                 away += step * step
-                moved += (xyz[s, a] - xyz[now, a]) ** 2
+                moved += (xyz[s, a] - home[b, a]) ** 2
             cost = away - min(back, 0.0) ** 2 + held * held * moved
             if cost < least:
                 foot[b], least = s, cost

@@ -76,9 +76,10 @@ def fitted(lines: Centrelines, label: Ints, least: Ints, xyz: Floats) -> Fit:
     """
     cameras = camera_place(lines, xyz)
     unseen = np.full(len(lines.xyz), np.nan)
+    home = lines.xyz[lines.first]
     fit = Fit(lines, unseen, tapers(lines, label, unseen), np.zeros(len(label), np.int64))
     for turn in ROUNDS:
-        fit = _round(_evened(fit), label, least, xyz[:: turn.every], cameras, turn)
+        fit = _round(_evened(fit), label, least, xyz[:: turn.every], cameras, turn, home)
     return fit
 
 
@@ -90,7 +91,7 @@ def _evened(fit: Fit) -> Fit:
     return Fit(even, blank, replace(fit.tapers, radius=radius), fit.foot)
 
 
-def _round(fit: Fit, label: Ints, least: Ints, xyz: Floats, cameras: Floats, turn: Round) -> Fit:
+def _round(fit: Fit, label: Ints, least: Ints, xyz: Floats, cameras: Floats, turn: Round, home: Floats) -> Fit:
     lines, was = drawn_out(fit.lines)
     view = View.of(lines, cameras)
     radius, noise = fit.tapers.radius[was], fit.tapers.noise
@@ -99,7 +100,7 @@ def _round(fit: Fit, label: Ints, least: Ints, xyz: Floats, cameras: Floats, tur
     front = replace(lines, xyz=lines.xyz - depth)
     inside = within_parents(front.xyz, lines.start, lines.parent, OUTSIDE * half)
     points = _shares(front, inside, half, xyz, turn)
-    foot = _feet(lines, inside)
+    foot = _feet(lines, inside, home)
     ties = _ties(lines, foot, depth, turn.tied)
     middle = replace(front, xyz=smoothed(front, points, ties, noise))
     ribbons = Ribbons.of(middle, view, points)
@@ -143,10 +144,10 @@ def _beyond(front: Centrelines, before: Ints, points: Floats) -> Bools:
     return np.asarray((over > STEP / 2) & front.free[line])
 
 
-def _feet(lines: Centrelines, inside: Bools) -> Ints:
+def _feet(lines: Centrelines, inside: Bools, home: Floats) -> Ints:
     """The station (B,) of its parent at which each line starts; 0 for lines without a parent."""
     ends = lines.last[np.maximum(lines.parent, 0)]
-    foot = feet(lines.xyz, lines.start, lines.parent, inside, AHEAD, SLIDE, HELD)
+    foot = feet(lines.xyz, lines.start, lines.parent, inside, home, AHEAD, SLIDE, HELD)
     return np.asarray(np.where(lines.goes_on, ends, np.maximum(foot, 0)))
 
 

@@ -10,9 +10,12 @@ from prunus.model import Label, Skeleton
 from tests.measure.cuts.trees import drawn
 
 
-def said(skeleton: Skeleton, **groups: dict[str, object]) -> dict[tuple[str, str], Demand | Left]:
+def said(
+    skeleton: Skeleton, measured: bool = False, **groups: dict[str, object]
+) -> dict[tuple[str, str], Demand | Left]:
     """What the rules say, by rule and branch."""
-    found = verdicts(Limbs.of(skeleton), CutRules.parse(groups, "test"))
+    limbs = Limbs.of(skeleton, measured=measured)
+    found = verdicts(limbs, CutRules.parse(groups, "test"))
     return {
         (one.rule, one.limb.name if isinstance(one, Demand) else one.branch): one for one in found
     }
@@ -44,6 +47,17 @@ def test_a_branch_just_over_the_limit_is_doubtful() -> None:
     found = said(drawn(), side_branches={"longer_than": 0.28})
     long = found["side_branches", "side branch 1"]
     assert isinstance(long, Demand) and long.doubts == ("only 0.01 m over the limit",)
+
+
+def test_a_branch_just_under_the_limit_goes_for_review_where_a_scan_may_hide_its_tip() -> None:
+    limit = {"longer_than": 0.30}
+    branch = "side_branches", "side branch 1"
+    seen = said(drawn(), measured=True, side_branches=limit)[branch]
+    assert isinstance(seen, Demand) and seen.because == "0.29 m of it seen, limit 0.3 m"
+    assert seen.doubts == ("0.01 m under the limit: its tip may be hidden",)
+    assert why(said(drawn(), side_branches=limit)[branch]) == "0.29 m long, not over 0.3 m"
+    far = said(drawn(), measured=True, side_branches={"longer_than": 0.34})[branch]
+    assert why(far) == "0.29 m long, not over 0.34 m"
 
 
 def test_leaders_far_apart_and_low_ones_stay() -> None:

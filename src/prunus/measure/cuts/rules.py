@@ -98,21 +98,29 @@ def height(limbs: Limbs, rules: CutRules, gone: Bools) -> list[Verdict]:
 def side_branches(limbs: Limbs, rules: CutRules, gone: Bools) -> list[Verdict]:
     """Side branches of leaders that are longer than the limit go, down to a stub."""
     limit = rules.side_branches.longer_than
+    least = limit - (rules.review.hidden if limbs.measured else 0.0)
     verdicts: list[Verdict] = []
     for limb in limbs.with_label(Label.SIDE_BRANCH):
         why = _not_a_case(limbs, limb, gone)
-        if why is None and limb.reach <= limit + GRID:
+        if why is None and limb.reach <= least + GRID:
             why = f"{limb.reach:.2f} m long, not over {limit:g} m"
         if why is None and limb.bark + rules.side_branches.stub >= limb.along[-1]:
             why = "does not stand clear of its leader"
         if why is not None:
             verdicts.append(Left("side_branches", limb.name, why))
             continue
-        because = f"{limb.reach:.2f} m long, over {limit:g} m"
-        near = limb.reach - limit < rules.review.near_limit
-        doubts = (f"only {limb.reach - limit:.2f} m over the limit",) if near else ()
+        because, doubts = _long(limb.reach, limit, rules.review.near_limit)
         verdicts.append(_at_foot("side_branches", limb, rules.side_branches.stub, because, doubts))
     return verdicts
+
+
+def _long(reach: float, limit: float, near: float) -> tuple[str, tuple[str, ...]]:
+    """Why a side branch goes that is so long, and the doubts about that."""
+    if reach <= limit + GRID:
+        hidden = f"{limit - reach:.2f} m under the limit: its tip may be hidden"
+        return f"{reach:.2f} m of it seen, limit {limit:g} m", (hidden,)
+    doubts = (f"only {reach - limit:.2f} m over the limit",) if reach - limit < near else ()
+    return f"{reach:.2f} m long, over {limit:g} m", doubts
 
 
 RULES: tuple[Rule, ...] = (spacing, height, side_branches)

@@ -67,6 +67,7 @@ class Review(_Group):
     past: float = Field(ge=0)
     level: float = Field(ge=0, le=90)
     near_limit: float = Field(ge=0, le=1)
+    hidden: float = Field(ge=0, le=1)
     other_wood: float = Field(ge=0, le=1)
     thick: float = Field(gt=0, le=10)
     seen: float = Field(ge=0, le=1)
