@@ -17,7 +17,7 @@ from prunus.measure.radii import WIDE, Tapers, tapers
 from prunus.measure.ribbons import Ribbons, View, camera_place
 from prunus.measure.smoothing import Shares, Ties, smoothed
 from prunus.measure.tips import drawn_out, kept
-from prunus.model import Bools, Floats, Ints
+from prunus.model import Bools, Floats, Ints, Label
 
 
 @dataclass(frozen=True)
@@ -52,8 +52,14 @@ AHEAD = 6
 """The direction in which a line leaves its parent is that of so many stations."""
 SLIDE = 8
 """Its foot moves by so many stations in a round, at most."""
-HELD = 0.15
-"""It moves where that brings the lines nearer by this share of its way."""
+LEAVES = {
+    (Label.SUPPORT, Label.LEADER): (0.45, 0.25),
+}
+"""The usual angle between a branch and its parent, seen where it comes out of the wood, radians."""
+ANY = (1.0, 100.0)
+MISS = (0.005, 0.6)
+BENT = 0.03
+ASTRAY = 0.04
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +75,23 @@ class Fit:
     foot: Ints
 
 
+@dataclass(frozen=True, eq=False)
+class Homes:
+    """Where the skeleton has the starts of the lines (B, 3), and how they usually leave (B, 2)."""
+
+    place: Floats
+    usual: Floats
+    bent: Floats
+
+    @classmethod
+    def of(cls, lines: Centrelines, label: Ints) -> Homes:
+        above = label[np.maximum(lines.parent, 0)]
+        pairs = [(Label(a), Label(b)) for a, b in zip(above, label, strict=True)]
+        usual = np.array([LEAVES.get(pair, ANY) for pair in pairs])
+        bent = np.array([BENT if pair == (Label.SUPPORT, Label.LEADER) else 0.0 for pair in pairs])
+        return cls(lines.xyz[lines.first], usual, bent)
+
+
 def fitted(lines: Centrelines, label: Ints, least: Ints, xyz: Floats) -> Fit:
     """Lines of some labels (B,) fitted to the points (P, 3) of their tree; the house frame.
 
@@ -76,7 +99,7 @@ def fitted(lines: Centrelines, label: Ints, least: Ints, xyz: Floats) -> Fit:
     """
     cameras = camera_place(lines, xyz)
     unseen = np.full(len(lines.xyz), np.nan)
-    home = lines.xyz[lines.first]
+    home = Homes.of(lines, label)
     fit = Fit(lines, unseen, tapers(lines, label, unseen), np.zeros(len(label), np.int64))
     for turn in ROUNDS:
         fit = _round(_evened(fit), label, least, xyz[:: turn.every], cameras, turn, home)
@@ -91,7 +114,7 @@ def _evened(fit: Fit) -> Fit:
     return Fit(even, blank, replace(fit.tapers, radius=radius), fit.foot)
 
 
-def _round(fit: Fit, label: Ints, least: Ints, xyz: Floats, cameras: Floats, turn: Round, home: Floats) -> Fit:
+def _round(fit: Fit, label: Ints, least: Ints, xyz: Floats, cameras: Floats, turn: Round, homes: Homes) -> Fit:
     lines, was = drawn_out(fit.lines)
     view = View.of(lines, cameras)
     radius, noise = fit.tapers.radius[was], fit.tapers.noise
@@ -100,7 +123,7 @@ def _round(fit: Fit, label: Ints, least: Ints, xyz: Floats, cameras: Floats, tur
     front = replace(lines, xyz=lines.xyz - depth)
     inside = within_parents(front.xyz, lines.start, lines.parent, OUTSIDE * half)
     points = _shares(front, inside, half, xyz, turn)
-    foot = _feet(lines, inside, home)
+    foot = _feet(lines, inside, homes, noise)
     ties = _ties(lines, foot, depth, turn.tied)
     middle = replace(front, xyz=smoothed(front, points, ties, noise))
     ribbons = Ribbons.of(middle, view, points)
@@ -144,10 +167,11 @@ def _beyond(front: Centrelines, before: Ints, points: Floats) -> Bools:
     return np.asarray((over > STEP / 2) & front.free[line])
 
 
-def _feet(lines: Centrelines, inside: Bools, home: Floats) -> Ints:
+def _feet(lines: Centrelines, inside: Bools, homes: Homes, noise: float) -> Ints:
     """The station (B,) of its parent at which each line starts; 0 for lines without a parent."""
     ends = lines.last[np.maximum(lines.parent, 0)]
-    foot = feet(lines.xyz, lines.start, lines.parent, inside, home, AHEAD, SLIDE, HELD)
+    err = np.column_stack([np.sqrt(MISS[0] ** 2 + (MISS[1] * noise) ** 2 + homes.bent**2), np.full(len(homes.bent), ASTRAY)])
+    foot = feet(lines.xyz, lines.start, lines.parent, inside, homes.place, homes.usual, err, AHEAD, SLIDE)
     return np.asarray(np.where(lines.goes_on, ends, np.maximum(foot, 0)))
 
 
