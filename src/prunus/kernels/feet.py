@@ -66,8 +66,8 @@ def feet(
     The line is led back straight from its first station outside the parent's wood, in the
     direction of the next `ahead` stations. Of the parent's stations up to `slide` from where it
     left at `home` (B, 3), the likeliest is chosen: near the straight line, at a usual angle, and
-    near home. usual (B, 2): angle between parent and line, radians, and its standard deviation;
-    err (B, 2): standard deviations of the distance from the straight line, and from home, metres.
+    near home. usual (B, 2 or more): the angle between parent and line, radians, and its standard
+    deviation; err (B, 2): standard deviations of the distances from line and home, metres.
     """
     B = len(parent)
     foot = np.full(B, -1, np.int64)

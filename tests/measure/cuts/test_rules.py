@@ -92,6 +92,19 @@ def test_of_two_alike_the_less_sure_goes_then_the_shorter_and_both_are_doubtful(
     assert isinstance(goes, Demand) and goes.doubts == ("leader 2 is the shorter of two alike",)
 
 
+def test_where_it_is_not_plain_which_leader_goes_the_branches_of_both_are_planned() -> None:
+    close = {"closest": 0.6}
+    branch = "side_branches", "side branch 1"
+    picture = drawn("     l\nl    l\nlbbb lb\nl    l\nl    l\nssstss\n   t\n   o")
+    kept = said(picture, measured=True, spacing=close)[branch]
+    assert isinstance(kept, Demand)
+    assert kept.doubts == ("only if leader 1 stays, which is not plain",)
+    assert why(said(picture, spacing=close)[branch]) == "comes down by another rule"
+    thin = thinned(picture, "leader 1", 0.006)
+    plain = said(thin, measured=True, spacing=close)[branch]
+    assert why(plain) == "comes down by another rule"
+
+
 def test_leaders_without_height_in_common_are_not_compared() -> None:
     found = said(drawn("l    \nl    \nl  l \nsstss\n  t\n  o"), spacing={"closest": 2.0})
     assert why(found["spacing", "leader 1"]) == "no other leader stands beside it"
