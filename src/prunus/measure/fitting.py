@@ -15,6 +15,7 @@ from prunus.kernels.lines import nearest_on_lines
 from prunus.measure.centrelines import STEP, Centrelines, carried, joined, unit
 from prunus.measure.radii import WIDE, Tapers, tapers
 from prunus.measure.ribbons import Ribbons, View, camera_place, window
+from prunus.measure.sides import ROUNDER, seen_around
 from prunus.measure.smoothing import Shares, Ties, smoothed
 from prunus.measure.tips import drawn_out, kept
 from prunus.model import Bools, Floats, Ints, Label
@@ -70,7 +71,8 @@ class Fit:
     """Lines, and at their stations the points (S,), weighted, and the radii.
 
     `foot` (B,) is the station of its parent at which each line starts; 0 where it has no parent.
-    `home` (S, 3) is where the skeleton has the stations.
+    `home` (S, 3) is where the skeleton has the stations; `around` (B,) how far each line was seen
+    from all around, see `sides.py`.
     """
 
     lines: Centrelines
@@ -78,6 +80,7 @@ class Fit:
     tapers: Tapers
     foot: Ints
     home: Floats
+    around: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +111,7 @@ def fitted(lines: Centrelines, label: Ints, least: Ints, xyz: Floats) -> Fit:
     unseen = np.full(len(lines.xyz), np.nan)
     starts = Starts.of(lines, label)
     nowhere = np.zeros(len(label), np.int64)
-    fit = Fit(lines, unseen, tapers(lines, label, unseen), nowhere, lines.xyz)
+    fit = Fit(lines, unseen, tapers(lines, label, unseen), nowhere, lines.xyz, np.zeros(len(label)))
     for turn in ROUNDS:
         fit = _round(_evened(fit), label, least, xyz[:: turn.every], cameras, turn, starts)
     return fit
@@ -120,7 +123,7 @@ def _evened(fit: Fit) -> Fit:
     radius = carried(fit.tapers.radius, fit.lines, even)
     count = carried(np.nan_to_num(fit.count), fit.lines, even)
     home = np.column_stack([carried(column, fit.lines, even) for column in fit.home.T])
-    return Fit(even, count, replace(fit.tapers, radius=radius), fit.foot, home)
+    return Fit(even, count, replace(fit.tapers, radius=radius), fit.foot, home, fit.around)
 
 
 def _round(
@@ -136,7 +139,7 @@ def _round(
     view = View.of(lines, cameras)
     radius, noise = fit.tapers.radius[was], fit.tapers.noise
     half = np.hypot(radius / WIDE, noise)
-    depth = _depth(radius, view)
+    depth = _depth(radius, view, fit.around[lines.line])
     front = replace(lines, xyz=lines.xyz - depth)
     inside = within_parents(front.xyz, lines.start, lines.parent, OUTSIDE * half)
     points = _shares(front, inside, half, xyz, turn)
@@ -145,11 +148,15 @@ def _round(
     home = _home(fit, was, lines.xyz)
     middle = replace(front, xyz=smoothed(front, home - depth, points, ties, noise))
     ribbons = Ribbons.of(middle, view, points)
-    found = tapers(lines, label, np.where(inside, np.nan, ribbons.half))
-    axes = replace(lines, xyz=middle.xyz + _depth(found.radius, view))
+    around = seen_around(lines, ribbons, noise)
+    half = ribbons.half * (1 - ROUNDER * around[lines.line])
+    found = tapers(lines, label, np.where(inside, np.nan, half))
+    axes = replace(lines, xyz=middle.xyz + _depth(found.radius, view, around[lines.line]))
     stays = kept(lines, was, turn.every * ribbons.count, _least(lines, foot, least))
     row = np.cumsum(stays) - 1
-    return Fit(axes.part(stays), ribbons.count[stays], found.part(stays), row[foot], home[stays])
+    return Fit(
+        axes.part(stays), ribbons.count[stays], found.part(stays), row[foot], home[stays], around
+    )
 
 
 def _home(fit: Fit, was: Ints, now: Floats) -> Floats:
@@ -159,9 +166,9 @@ def _home(fit: Fit, was: Ints, now: Floats) -> Floats:
     return np.where(near, now, home)
 
 
-def _depth(radius: Floats, view: View) -> Floats:
-    """From the middle of the points to the axis (S, 3)."""
-    return np.asarray((DEEP[0] * radius + DEEP[1])[:, None] * view.back)
+def _depth(radius: Floats, view: View, around: Floats) -> Floats:
+    """From the middle of the points to the axis (S, 3); nothing where seen from all `around`."""
+    return np.asarray(((1 - around) * (DEEP[0] * radius + DEEP[1]))[:, None] * view.back)
 
 
 def _shares(front: Centrelines, inside: Bools, half: Floats, xyz: Floats, turn: Round) -> Shares:
