@@ -12,7 +12,7 @@ import argparse
 
 import numpy as np
 
-from bench.cuts import Judged, outcome
+from bench.cuts import Judged, outcomes
 from prunus.io.safely import write_bytes
 from prunus.learn.logistic import fit_logistic
 from prunus.measure.cuts import shipped_rules
@@ -70,7 +70,7 @@ def main() -> None:
     chosen = parser.parse_args()
     rows, right, tree, clear = [], [], [], []
     for seed in range(chosen.seed, chosen.seed + chosen.trees):
-        for one in outcome(seed, "field", shipped_rules()).planned:
+        for one in outcomes(seed, "field", shipped_rules())[0].planned:
             if one.cut.rule != "side_branches":
                 continue
             rows.append(features(one.cut.evidence))
