@@ -59,9 +59,9 @@ class Judged:
 class Outcome:
     """The plan of one tree: demanded cuts that the scan shows, and which planned cut met each.
 
-    `middle` (D, 3) are the middles of the branches that these cut; `limbs` those of the plan; `best`
-    how many the demanded cuts themselves would meet: what the scan hides may alter what the rules
-    ask for on the whole tree.
+    `middle` (D, 3) are the middles of the branches that these cut; `limbs` those of the plan;
+    `best` how many the demanded cuts themselves would meet: what the scan hides may alter what the
+    rules ask for on the whole tree.
     """
 
     demanded: tuple[Cut, ...]
