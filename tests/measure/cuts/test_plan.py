@@ -85,6 +85,7 @@ def test_what_is_doubtful_is_said() -> None:
     assert "the way to it from the base has an edge of confidence 0.20" in reasons(path)
     thick = skeleton.with_radius(np.where(skeleton.label == Label.SIDE_BRANCH, 0.009, 0.01))
     assert "90% as thick as its leader: it may be one" in reasons(thick)
+    assert "18 mm thick: it may be a leader" in reasons(thick)
     assert "only 0.01 m over the limit" in reasons(skeleton, side_branches={"longer_than": 0.28})
     assert "it goes through a leader" in reasons(skeleton, height={"over": 0.3, "to": 0.25})
 

@@ -40,6 +40,8 @@ def doubts_of(demand: Demand, evidence: Evidence, confidence: float, rules: CutR
     if demand.limb.label == Label.SIDE_BRANCH:
         if evidence.thick > review.thick:
             found.append(f"{evidence.thick:.0%} as thick as its leader: it may be one")
+        if evidence.diameter > review.stout:
+            found.append(f"{1e3 * evidence.diameter:.0f} mm thick: it may be a leader")
         if evidence.upright < review.level:
             found.append("its leader lies level there: it may be a support")
         if evidence.behind > review.behind:
