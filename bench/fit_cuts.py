@@ -1,9 +1,10 @@
 """`python -m bench.fit_cuts [--trees 120] [--seed 500000] [--write]`: the confidence of cuts.
 
-A logistic regression over the evidence of the side branches that the rules cut on what the chain
-makes of simulated field scans: right is a cut on a branch of which the rules ask for one on the
-true tree, or that comes down with another, at most 3 cm off. Prints, with each tree judged by a
-model that has not seen it, how many cuts a limit lets through and how many of them are wrong.
+Logistic regressions over the evidence of what the rules cut on what the chain makes of simulated
+scans: right is a cut on a branch of which the rules ask for one on the true tree, or that comes
+down with another, at most 3 cm off. Side branches from field scans; leaders, of which there are
+few, from clean ones too. Prints, with each tree judged by a model that has not seen it, how many
+cuts of side branches a limit lets through and how many of them are wrong.
 """
 
 from __future__ import annotations
@@ -12,15 +13,17 @@ import argparse
 
 import numpy as np
 
-from bench.cuts import Judged, outcome
+from bench.cuts import Judged, outcomes
 from prunus.io.safely import write_bytes
 from prunus.learn.logistic import fit_logistic
 from prunus.measure.cuts import shipped_rules
 from prunus.measure.cuts.confidence import SHIPPED, Model, features
 from prunus.model import Bools, Floats, Ints
+from prunus.simulate.settings import Setting
 
 OFF = 0.03
 """A cut that is farther off along its branch is not right here, metres."""
+SETTINGS: tuple[Setting, ...] = ("field", "clean")
 FOLDS = 8
 LIMITS = (0.5, 0.7, 0.8, 0.85, 0.9, 0.91, 0.92, 0.93, 0.94, 0.945, 0.95, 0.955, 0.96, 0.97)
 
@@ -68,22 +71,37 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=500_000)
     parser.add_argument("--write", action="store_true")
     chosen = parser.parse_args()
-    rows, right, tree, clear = [], [], [], []
-    for seed in range(chosen.seed, chosen.seed + chosen.trees):
-        for one in outcome(seed, "field", shipped_rules()).planned:
-            if one.cut.rule != "side_branches":
-                continue
-            rows.append(features(one.cut.evidence))
-            right.append(is_right(one))
-            tree.append(seed)
-            clear.append(not [r for r in one.cut.reasons if not r.startswith("confidence")])
-    names = list(rows[0])
-    values = np.array([[row[name] for name in names] for row in rows])
-    report(values, names, np.array(right), np.array(tree), np.array(clear))
-    model = fitted(values, names, np.array(right))
-    print(model.to_toml())
+    seeds = range(chosen.seed, chosen.seed + chosen.trees)
+    rules, settings = shipped_rules(), SETTINGS
+    cuts = {s: [(n, one) for n in seeds for one in outcomes(n, s, rules)[0].planned]
+            for s in settings}  # fmt: skip
+    text = written(cuts["field"], cuts["field"] + cuts["clean"])
+    print(text)
     if chosen.write:
-        write_bytes(SHIPPED, model.to_toml().encode())
+        write_bytes(SHIPPED, text.encode())
+
+
+def written(field: list[tuple[int, Judged]], every: list[tuple[int, Judged]]) -> str:
+    """The file of the models, from planned cuts and the seeds of their trees."""
+    made = "# The confidence in cuts, made by `python -m bench.fit_cuts`.\n\n"
+    shoots = [(tree, one) for tree, one in field if one.cut.rule == "side_branches"]
+    names, values, right = _table([one for _, one in shoots])
+    clear = [
+        not [r for r in one.cut.reasons if not r.startswith("confidence")] for _, one in shoots
+    ]
+    report(values, names, right, np.array([tree for tree, _ in shoots]), np.array(clear))
+    side_branches = fitted(values, names, right)
+    names, values, right = _table([one for _, one in every if one.cut.rule == "spacing"])
+    print(f"{len(right)} cuts through leaders, {right.mean():.1%} right")
+    leaders = fitted(values[:, :1], names[:1], right)
+    return made + side_branches.to_toml("side_branches") + "\n" + leaders.to_toml("leaders")
+
+
+def _table(cuts: list[Judged]) -> tuple[list[str], Floats, Bools]:
+    """The names (F) and values (C, F) of the features of cuts, and which (C,) are right."""
+    rows = [features(one.cut.evidence) for one in cuts]
+    values = np.array([list(row.values()) for row in rows])
+    return list(rows[0]), values, np.array([is_right(one) for one in cuts])
 
 
 if __name__ == "__main__":

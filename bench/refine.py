@@ -60,12 +60,12 @@ class Case:
 def case_of(seed: int, setting: Setting) -> Case:
     """The scan of that seed."""
     tree = tree_of(seed, setting)
-    place = _as_shown(simulate_scan(seed, setting), setting)
+    place = as_shown(simulate_scan(seed, setting), setting)
     points = tree.cloud.to_input.apply(tree.cloud.xyz)
     return Case(points, tree.truth, tree.counts, place)
 
 
-def _as_shown(scan: Scan, setting: Setting) -> Skeleton:
+def as_shown(scan: Scan, setting: Setting) -> Skeleton:
     """The true tree where the views that have it in sight show it, on average."""
     rig, truth = scan_settings(setting).rig, scan.truth
     moved, count = np.zeros(truth.xyz.shape), np.zeros(len(truth))

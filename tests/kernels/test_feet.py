@@ -5,7 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from prunus.kernels import reference
-from prunus.kernels.feet import feet, within_parents
+from prunus.kernels.feet import Flags, feet, within_parents
+from prunus.model import Floats
 
 STEP = 0.01
 UP = np.column_stack([np.zeros(31), np.zeros(31), np.arange(31) * STEP])
@@ -29,8 +30,28 @@ def test_a_slanting_line_leaves_where_it_points() -> None:
     slanting[3:, 2] += (slanting[3:, 0]) - 0.05
     inside = np.zeros(42, np.bool_)
     inside[31:34] = True
-    found = feet(np.concatenate([UP, slanting]), START, PARENT, inside, 6, 8, 0.0)
-    assert found.tolist() == [-1, 10], "5 cm lower than it started"
+    assert left(slanting, inside, [0.01, 10.0], ANY) == 10, "5 cm lower than it started"
+    assert left(slanting, inside, [10.0, 0.01], ANY) == 15, "where it started"
+
+
+def test_a_line_that_bends_leaves_at_a_usual_angle() -> None:
+    inside = np.zeros(42, np.bool_)
+    inside[31:34] = True
+    steep = (np.arctan2(0.03, 0.05), 0.01)
+    assert left(ASIDE, inside, [10.0, 10.0], steep) == 10, "3 cm aside, 5 cm up"
+
+
+ANY = (1.0, 1000.0)
+
+
+def left(line: Floats, inside: Flags, err: list[float], usual: tuple[float, float]) -> int:
+    """The station of `UP` from which a line leaves."""
+    lines, home = np.concatenate([UP, line]), np.array([UP[0], line[0]])
+    found = feet(
+        lines, START, PARENT, inside, home, np.array([ANY, usual]), np.array([err, err]), 6, 8
+    )
+    assert found[0] == -1
+    return int(found[1])
 
 
 @settings(deadline=None, max_examples=40)
@@ -43,7 +64,11 @@ def test_lines_leave_from_the_same_stations(seed: int, ahead: int, slide: int) -
     inside = [rng.random(n) < 0.3 for n in size]
     start = np.concatenate([[0], size.cumsum()])
     inside = [np.logical_and.accumulate(some) for some in inside]
-    found = feet(np.concatenate(lines), start, parent, np.concatenate(inside), ahead, slide, 0.15)
-    slow = reference.feet(lines, parent, inside, ahead, slide, 0.15)
+    home = rng.normal(0, 0.05, (4, 3))
+    usual, err = rng.uniform(0.2, 2.0, (4, 2)), rng.uniform(0.01, 0.1, (4, 2))
+    found = feet(
+        np.concatenate(lines), start, parent, np.concatenate(inside), home, usual, err, ahead, slide
+    )
+    slow = reference.feet(lines, parent, inside, home, usual, err, ahead, slide)
     own = [f - start[p] if p >= 0 else -1 for f, p in zip(found, parent, strict=True)]
     assert own == slow

@@ -27,6 +27,13 @@ def half_rod(
     return np.asarray(at + across * side + depth * back)
 
 
+def ring(rng: np.random.Generator, foot: Floats, tip: Floats, radius: float) -> Floats:
+    """Points (6000, 3) on all sides of an upright round rod."""
+    turn = rng.uniform(0, 2 * np.pi, 6000)
+    around = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(6000)])
+    return np.asarray(foot + rng.random(6000)[:, None] * (tip - foot) + radius * around)
+
+
 FOOT, TOP = np.array([0.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 FORK, END = np.array([0.0, 0.0, 0.6]), np.array([0.3, 0.0, 0.75])
 
@@ -61,6 +68,28 @@ def test_lines_lie_on_the_axes(forked: tuple[Skeleton, PointCloud]) -> None:
     along = (END - FORK) / np.linalg.norm(END - FORK)
     off = support - FORK - np.outer((support - FORK) @ along, along)
     assert np.median(np.linalg.norm(off, axis=1)) < 0.004
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.003, 0.006])
+def test_wood_seen_from_all_around_is_not_pushed_away_from_the_cameras(
+    noise: float, rng: np.random.Generator
+) -> None:
+    points = np.concatenate([ring(rng, FOOT, TOP, 0.03), half_rod(rng, FORK, END, 0.012)])
+    cloud = PointCloud.from_xyz(points + noise * rng.normal(size=points.shape))
+    nodes = [
+        [0.0, 0.01, 0.0],
+        [0.01, -0.01, 0.6],
+        [0.0, 0.02, 1.0],
+        [0.2, 0.0, 0.7],
+        [0.29, 0, 0.74],
+    ]
+    labels = [Label.TRUNK] * 3 + [Label.SUPPORT] * 2
+    rough = Skeleton.build(nodes, [-1, 0, 1, 1, 3], labels).moved(cloud.to_input.inverse())
+    skeleton = in_place(refined(rough, cloud), cloud)
+    trunk, support = branches(skeleton)
+    assert abs(np.median(skeleton.xyz[trunk.rows[1:], 1])) < 0.002
+    assert np.median(skeleton.radius[trunk.rows[1:]]) == pytest.approx(0.03, abs=0.002)
+    assert abs(np.median(skeleton.xyz[support.rows[1:], 1])) < 0.004, "still seen from one side"
 
 
 def test_a_branch_starts_where_its_axis_meets_its_parents(

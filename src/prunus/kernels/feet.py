@@ -51,14 +51,23 @@ def within_parents(xyz: Floats, start: Ints, parent: Ints, half: Floats) -> Flag
 
 @kernel
 def feet(
-    xyz: Floats, start: Ints, parent: Ints, inside: Flags, ahead: int, slide: int, held: float
+    xyz: Floats,
+    start: Ints,
+    parent: Ints,
+    inside: Flags,
+    home: Floats,
+    usual: Floats,
+    err: Floats,
+    ahead: int,
+    slide: int,
 ) -> Ints:
-    """The station (B,) of the parent from which each line leaves; -1 where it has no parent.
+    """The station (B,) of the parent from which each line starts; -1 where it has no parent.
 
     The line is led back straight from its first station outside the parent's wood, in the
-    direction of the next `ahead` stations. Of the parent's stations up to `slide` from where the
-    line leaves so far, the one is chosen that it passes nearest; `held` times the way along the
-    parent, in distance, is what another has to be better by.
+    direction of the next `ahead` stations. Of the parent's stations up to `slide` from where it
+    left at `home` (B, 3), the likeliest is chosen: near the straight line, at a usual angle, and
+    near home. usual (B, 2 or more): the angle between parent and line, radians, and its standard
+    deviation; err (B, 2): standard deviations of the distances from line and home, metres.
     """
     B = len(parent)
     foot = np.full(B, -1, np.int64)
@@ -76,16 +85,21 @@ def feet(
             way[a] = xyz[far, a] - xyz[out, a]
             length += way[a] ** 2
         way /= max(np.sqrt(length), TINY)
-        now = nearest_station(xyz, start[p], start[p + 1], xyz[start[b]])
+        now = nearest_station(xyz, start[p], start[p + 1], home[b])
         least = np.inf
         for s in range(max(now - slide, start[p] + 1), min(now + slide + 1, start[p + 1] - 1)):
-            back, away, moved = 0.0, 0.0, 0.0
+            back, away, moved, rise, step_square = 0.0, 0.0, 0.0, 0.0, 0.0
             for a in range(3):
                 step = xyz[s, a] - xyz[out, a]
+                on = xyz[s + 1, a] - xyz[s - 1, a]
                 back += step * way[a]
                 away += step * step
-                moved += (xyz[s, a] - xyz[now, a]) ** 2
-            cost = away - min(back, 0.0) ** 2 + held * held * moved
+                moved += (xyz[s, a] - home[b, a]) ** 2
+                rise -= step * on
+                step_square += on * on
+            angle = np.arccos(min(max(rise / max(np.sqrt(away * step_square), TINY), -1.0), 1.0))
+            cost = (away - min(back, 0.0) ** 2) / err[b, 0] ** 2 + moved / err[b, 1] ** 2
+            cost += ((angle - usual[b, 0]) / usual[b, 1]) ** 2
             if cost < least:
                 foot[b], least = s, cost
         if foot[b] < 0:

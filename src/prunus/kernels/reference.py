@@ -245,11 +245,18 @@ def nearest_on_lines(
 
 
 def feet(
-    lines: list[Floats], parent: Ints, inside: list[Bools], ahead: int, slide: int, held: float
+    lines: list[Floats],
+    parent: Ints,
+    inside: list[Bools],
+    home: Floats,
+    usual: Floats,
+    err: Floats,
+    ahead: int,
+    slide: int,
 ) -> list[int]:
     """For each line the station of its parent, counted along it, from which it leaves; or -1."""
     found = []
-    for line, above, within_it in zip(lines, parent, inside, strict=True):
+    for b, (line, above, within_it) in enumerate(zip(lines, parent, inside, strict=True)):
         if above < 0:
             found.append(-1)
             continue
@@ -258,11 +265,14 @@ def feet(
         toward = line[min(out + ahead, len(line) - 1)] - line[out]
         toward = toward / np.linalg.norm(toward)
         own = lines[above]
-        now = int(np.linalg.norm(own - line[0], axis=1).argmin())
+        now = int(np.linalg.norm(own - home[b], axis=1).argmin())
         costs = {}
         for s in range(max(1, now - slide), min(len(own) - 1, now + slide + 1)):
-            step = own[s] - line[out]
-            beside = step - min(float(step @ toward), 0.0) * toward
-            costs[s] = beside @ beside + held**2 * ((own[s] - own[now]) ** 2).sum()
+            step, on = own[s] - line[out], own[s + 1] - own[s - 1]
+            beside = np.linalg.norm(step - min(float(step @ toward), 0.0) * toward)
+            cosine = -step @ on / np.linalg.norm(step) / np.linalg.norm(on)
+            turn = (np.arccos(np.clip(cosine, -1, 1)) - usual[b, 0]) / usual[b, 1]
+            moved = np.linalg.norm(own[s] - home[b])
+            costs[s] = (beside / err[b, 0]) ** 2 + (moved / err[b, 1]) ** 2 + turn**2
         found.append(min(costs, key=lambda s: costs[s]) if costs else len(own) - 1)
     return found

@@ -14,10 +14,11 @@ from prunus.kernels.feet import feet, within_parents
 from prunus.kernels.lines import nearest_on_lines
 from prunus.measure.centrelines import STEP, Centrelines, carried, joined, unit
 from prunus.measure.radii import WIDE, Tapers, tapers
-from prunus.measure.ribbons import Ribbons, View, camera_place
+from prunus.measure.ribbons import Ribbons, View, camera_place, window
+from prunus.measure.sides import ROUNDER, seen_around
 from prunus.measure.smoothing import Shares, Ties, smoothed
 from prunus.measure.tips import drawn_out, kept
-from prunus.model import Bools, Floats, Ints
+from prunus.model import Bools, Floats, Ints, Label
 
 
 @dataclass(frozen=True)
@@ -52,8 +53,17 @@ AHEAD = 6
 """The direction in which a line leaves its parent is that of so many stations."""
 SLIDE = 8
 """Its foot moves by so many stations in a round, at most."""
-HELD = 0.15
-"""It moves where that brings the lines nearer by this share of its way."""
+MISS = (0.005, 0.6)
+"""Standard deviation of a foot from the straight line: metres, a share of the noise."""
+ASTRAY = 0.04
+"""The same from where the skeleton has it, metres."""
+BENT = (0.45, 0.25, 0.03)
+"""A leader leaves its support at that angle, usually, radians, with that standard deviation; and it
+bends up, so that it misses the straight line by so much more, metres."""
+ANY = (1.0, 100.0, 0.0)
+"""Other branches leave at any angle, and straight."""
+ALONE = 5
+"""A line is held where the skeleton has it so many stations from any points."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,12 +71,35 @@ class Fit:
     """Lines, and at their stations the points (S,), weighted, and the radii.
 
     `foot` (B,) is the station of its parent at which each line starts; 0 where it has no parent.
+    `home` (S, 3) is where the skeleton has the stations; `around` (B,) how far each line was seen
+    from all around, see `sides.py`.
     """
 
     lines: Centrelines
     count: Floats
     tapers: Tapers
     foot: Ints
+    home: Floats
+    around: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Starts:
+    """Where the skeleton has the starts of lines (B, 3), and how they leave (B, 3), see `BENT`."""
+
+    place: Floats
+    leaves: Floats
+
+    @classmethod
+    def of(cls, lines: Centrelines, label: Ints) -> Starts:
+        """Those of lines of some labels (B,)."""
+        bent = (label == Label.LEADER) & (label[np.maximum(lines.parent, 0)] == Label.SUPPORT)
+        return cls(lines.xyz[lines.first], np.where(bent[:, None], BENT, ANY))
+
+    def err(self, noise: float) -> Floats:
+        """Standard deviations (B, 2), metres: from the straight line, and from `place`."""
+        miss = np.sqrt(MISS[0] ** 2 + (MISS[1] * noise) ** 2 + self.leaves[:, 2] ** 2)
+        return np.column_stack([miss, np.full(len(miss), ASTRAY)])
 
 
 def fitted(lines: Centrelines, label: Ints, least: Ints, xyz: Floats) -> Fit:
@@ -76,9 +109,11 @@ def fitted(lines: Centrelines, label: Ints, least: Ints, xyz: Floats) -> Fit:
     """
     cameras = camera_place(lines, xyz)
     unseen = np.full(len(lines.xyz), np.nan)
-    fit = Fit(lines, unseen, tapers(lines, label, unseen), np.zeros(len(label), np.int64))
+    starts = Starts.of(lines, label)
+    nowhere = np.zeros(len(label), np.int64)
+    fit = Fit(lines, unseen, tapers(lines, label, unseen), nowhere, lines.xyz, np.zeros(len(label)))
     for turn in ROUNDS:
-        fit = _round(_evened(fit), label, least, xyz[:: turn.every], cameras, turn)
+        fit = _round(_evened(fit), label, least, xyz[:: turn.every], cameras, turn, starts)
     return fit
 
 
@@ -86,33 +121,54 @@ def _evened(fit: Fit) -> Fit:
     """The lines with even stations; the radii go with them."""
     even = joined(fit.lines.lines(), fit.lines)
     radius = carried(fit.tapers.radius, fit.lines, even)
-    blank = np.zeros(len(radius))
-    return Fit(even, blank, replace(fit.tapers, radius=radius), fit.foot)
+    count = carried(np.nan_to_num(fit.count), fit.lines, even)
+    home = np.column_stack([carried(column, fit.lines, even) for column in fit.home.T])
+    return Fit(even, count, replace(fit.tapers, radius=radius), fit.foot, home, fit.around)
 
 
-def _round(fit: Fit, label: Ints, least: Ints, xyz: Floats, cameras: Floats, turn: Round) -> Fit:
+def _round(
+    fit: Fit,
+    label: Ints,
+    least: Ints,
+    xyz: Floats,
+    cameras: Floats,
+    turn: Round,
+    starts: Starts,
+) -> Fit:
     lines, was = drawn_out(fit.lines)
     view = View.of(lines, cameras)
     radius, noise = fit.tapers.radius[was], fit.tapers.noise
     half = np.hypot(radius / WIDE, noise)
-    depth = _depth(radius, view)
+    depth = _depth(radius, view, fit.around[lines.line])
     front = replace(lines, xyz=lines.xyz - depth)
     inside = within_parents(front.xyz, lines.start, lines.parent, OUTSIDE * half)
     points = _shares(front, inside, half, xyz, turn)
-    foot = _feet(lines, inside)
+    foot = _feet(lines, inside, starts, noise)
     ties = _ties(lines, foot, depth, turn.tied)
-    middle = replace(front, xyz=smoothed(front, points, ties, noise))
+    home = _home(fit, was, lines.xyz)
+    middle = replace(front, xyz=smoothed(front, home - depth, points, ties, noise))
     ribbons = Ribbons.of(middle, view, points)
-    found = tapers(lines, label, np.where(inside, np.nan, ribbons.half))
-    axes = replace(lines, xyz=middle.xyz + _depth(found.radius, view))
+    around = seen_around(lines, ribbons, noise)
+    half = ribbons.half * (1 - ROUNDER * around[lines.line])
+    found = tapers(lines, label, np.where(inside, np.nan, half))
+    axes = replace(lines, xyz=middle.xyz + _depth(found.radius, view, around[lines.line]))
     stays = kept(lines, was, turn.every * ribbons.count, _least(lines, foot, least))
     row = np.cumsum(stays) - 1
-    return Fit(axes.part(stays), ribbons.count[stays], found.part(stays), row[foot])
+    return Fit(
+        axes.part(stays), ribbons.count[stays], found.part(stays), row[foot], home[stays], around
+    )
 
 
-def _depth(radius: Floats, view: View) -> Floats:
-    """From the middle of the points to the axis (S, 3)."""
-    return np.asarray((DEEP[0] * radius + DEEP[1])[:, None] * view.back)
+def _home(fit: Fit, was: Ints, now: Floats) -> Floats:
+    """Where stations (S, 3) stay: where the skeleton has them if no points are near, else `now`."""
+    near = window(fit.lines, fit.count[:, None], ALONE)[was] > 0
+    home = fit.home[was] + now - fit.lines.xyz[was]
+    return np.where(near, now, home)
+
+
+def _depth(radius: Floats, view: View, around: Floats) -> Floats:
+    """From the middle of the points to the axis (S, 3); nothing where seen from all `around`."""
+    return np.asarray(((1 - around) * (DEEP[0] * radius + DEEP[1]))[:, None] * view.back)
 
 
 def _shares(front: Centrelines, inside: Bools, half: Floats, xyz: Floats, turn: Round) -> Shares:
@@ -143,10 +199,13 @@ def _beyond(front: Centrelines, before: Ints, points: Floats) -> Bools:
     return np.asarray((over > STEP / 2) & front.free[line])
 
 
-def _feet(lines: Centrelines, inside: Bools) -> Ints:
+def _feet(lines: Centrelines, inside: Bools, starts: Starts, noise: float) -> Ints:
     """The station (B,) of its parent at which each line starts; 0 for lines without a parent."""
     ends = lines.last[np.maximum(lines.parent, 0)]
-    foot = feet(lines.xyz, lines.start, lines.parent, inside, AHEAD, SLIDE, HELD)
+    foot = feet(
+        lines.xyz, lines.start, lines.parent, inside, starts.place, starts.leaves,
+        starts.err(noise), AHEAD, SLIDE,
+    )  # fmt: skip
     return np.asarray(np.where(lines.goes_on, ends, np.maximum(foot, 0)))
 
 

@@ -42,6 +42,14 @@ ERR_OF_ALL = (0.0003, 0.05, 0.20)
 """The same of an error that all half widths of a branch share."""
 ALIKE = 0.20
 """Half widths so near, metres, err alike."""
+UNEVEN = {
+    Label.TRUNK: 0.06,
+    Label.SUPPORT: 0.06,
+    Label.LEADER: 0.045,
+    Label.SIDE_BRANCH: 0.0,
+}
+"""No branch is as round and tapers as evenly as taken here: standard deviation, a share of the
+radius, which is in the error alone (fitted, see bench.refine)."""
 THIN = 0.010
 """Where the usual radius is less, metres, the noise is read off the widths."""
 ROUNDS = 3
@@ -101,7 +109,8 @@ def tapers(lines: Centrelines, label: Ints, half: Floats) -> Tapers:
     ends, doubt = fit.solved(len(label))
     mix = np.column_stack([1 - share, share])
     radius = np.maximum((mix * ends[line]).sum(axis=1), LEAST)
-    error = np.sqrt(np.einsum("si,sij,sj->s", mix, doubt[line], mix))
+    uneven = np.array([UNEVEN[Label(number)] for number in label])[line] * radius
+    error = np.sqrt(np.einsum("si,sij,sj->s", mix, doubt[line], mix) + uneven**2)
     unknown = _unknown(lines, seen, fit.scatter(ends))
     return Tapers(radius, error, unknown, noise)
 

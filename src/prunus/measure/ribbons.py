@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.measure.centrelines import Centrelines, unit
+from prunus.measure.centrelines import TINY, Centrelines, unit
 from prunus.measure.smoothing import Shares
-from prunus.model import Bools, Floats
+from prunus.model import Bools, Floats, Ints
 
 CAMERA = 1.5
 """The cameras stand about so far before the tree, metres, at smaller Y ..."""
@@ -21,6 +21,8 @@ HIGH = 1.45
 FAN = 0.5
 """Several stand side by side along the row: places are seen askew by this share of their way from
 the middle."""
+MIDDLE = 0.5
+"""The middle of a ribbon is that share of it."""
 AROUND = 4
 """The width is that of the points up to so many stations away."""
 FEWEST = 5.0
@@ -59,10 +61,13 @@ class Ribbons:
     """At each station: half the width (S,) of the ribbon, and the points (S,) at it, weighted.
 
     Half the width is NaN of too few points; that of an evenly filled ribbon from -h to h is h.
+    `deep` (B,) is how deep each line's points lie along its middle, as a share of half the width:
+    little of wood seen from one side, much of wood seen from all around; see `sides.py`.
     """
 
     half: Floats
     count: Floats
+    deep: Floats
 
     @classmethod
     def of(cls, lines: Centrelines, view: View, points: Shares) -> Ribbons:
@@ -70,11 +75,27 @@ class Ribbons:
         size, at = len(lines.xyz), points.station
         share = points.share[:, None]
         here = lines.xyz[points.before] * (1 - share) + lines.xyz[points.before + 1] * share
-        across = ((points.xyz - here) * view.side[at]).sum(axis=1)
+        off = points.xyz - here
+        across = (off * view.side[at]).sum(axis=1)
         sums = [points.summed(across**power, size) for power in (0, 1, 2)]
         count, mean, square = window(lines, np.column_stack(sums), AROUND).T
         some = np.where(count < FEWEST, np.nan, count)
-        return cls(np.sqrt(3 * np.maximum(square / some - (mean / some) ** 2, 0.0)), sums[0])
+        half = np.sqrt(3 * np.maximum(square / some - (mean / some) ** 2, 0.0))
+        depth = (off * view.back[at]).sum(axis=1)
+        deep = _deep(lines, at, across, depth, half[at], points.weight)
+        return cls(half, sums[0], deep)
+
+
+def _deep(
+    lines: Centrelines, at: Ints, across: Floats, depth: Floats, half: Floats, weight: Floats
+) -> Floats:
+    """How deep the points (Q,) of each line lie along its middle; see `Ribbons`."""
+    middle = np.flatnonzero(np.abs(across) < MIDDLE * half)
+    line, weight, size = lines.line[at[middle]], weight[middle], len(lines.parent)
+    square = np.bincount(line, weight * depth[middle] ** 2, size)
+    return np.asarray(
+        np.sqrt(square / (np.bincount(line, weight * half[middle] ** 2, size) + TINY))
+    )
 
 
 def window(lines: Centrelines, values: Floats, reach: int) -> Floats:

@@ -14,7 +14,7 @@ ERR = (0.004, 0.17)
 """Standard deviation of the middle of the points at one station: metres, a share of the noise."""
 BENDS = 0.5
 """Lines turn by so much: mean square of the turn, radians, a metre."""
-STAYS = 0.015
+STAYS = 0.012
 """Standard deviation, metres, of a centimetre of line without points from where it was."""
 
 
@@ -49,23 +49,25 @@ class Ties:
     err: float
 
 
-def smoothed(lines: Centrelines, points: Shares, ties: Ties, noise: float) -> Floats:
+def smoothed(lines: Centrelines, home: Floats, points: Shares, ties: Ties, noise: float) -> Floats:
     """The stations (S, 3) of smooth lines that pass through points and ties.
 
     What is least: the squared distance of the line from the points, in units of `ERR`, each station
-    with as much say as any other that has points; the squared second differences (`BENDS`);
-    the squared distance from where the lines are (`STAYS`), and of tied stations from their places.
+    with as much say as any other that has points, but less where these lie far off and hardly
+    count; the squared second differences (`BENDS`); the squared distance from home (S, 3)
+    (`STAYS`), and of tied stations from their places.
     """
     size, middle = len(lines.xyz), lines.xyz[0]
     total = np.bincount(points.station, points.weight, size)
     say = points.weight / (total[points.station] + FEW) / (ERR[0] + ERR[1] * noise) ** 2
+    say = say * (total / np.maximum(np.bincount(points.station, minlength=size), 1))[points.station]
     diagonal, beside = _of_points(points, say, size)
     right = np.column_stack([
         _spread(points, say * (points.xyz[:, axis] - middle[axis]), size) for axis in range(3)
     ])  # fmt: skip
     stays = STEP / STAYS**2
     diagonal += stays
-    right += stays * (lines.xyz - middle)
+    right += stays * (home - middle)
     diagonal[ties.station] += ties.err**-2
     right[ties.station] += ties.err**-2 * (ties.place - middle)
     beyond = _add_bending(lines, diagonal, beside)

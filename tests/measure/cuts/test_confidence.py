@@ -39,14 +39,15 @@ def test_a_branch_of_which_nothing_is_known_has_no_confidence() -> None:
     assert confidence_of(Label.LEADER, replace(GOOD, least=NAN)) == 0
 
 
-def test_a_leader_is_as_sure_as_its_least_sure_edge() -> None:
-    assert confidence_of(Label.LEADER, GOOD) == GOOD.least
+def test_no_cut_through_a_leader_is_so_sure_that_a_machine_may_make_it() -> None:
+    sure, doubted = replace(GOOD, least=1.0), replace(GOOD, least=0.5)
+    assert confidence_of(Label.LEADER, doubted) < confidence_of(Label.LEADER, sure) < 0.5
 
 
 def test_a_model_reads_what_it_wrote(tmp_path: Path) -> None:
     model = Model(0.5, {"least": 1.25}, {"least": -0.125})
-    (tmp_path / "model.toml").write_text(model.to_toml())
-    assert Model.from_toml(tmp_path / "model.toml") == model
+    (tmp_path / "model.toml").write_text(model.to_toml("leaders"))
+    assert Model.from_toml(tmp_path / "model.toml", "leaders") == model
 
 
 def test_the_shipped_model_knows_every_feature() -> None:

@@ -10,9 +10,12 @@ from prunus.model import Label, Skeleton
 from tests.measure.cuts.trees import drawn
 
 
-def said(skeleton: Skeleton, **groups: dict[str, object]) -> dict[tuple[str, str], Demand | Left]:
+def said(
+    skeleton: Skeleton, measured: bool = False, **groups: dict[str, object]
+) -> dict[tuple[str, str], Demand | Left]:
     """What the rules say, by rule and branch."""
-    found = verdicts(Limbs.of(skeleton), CutRules.parse(groups, "test"))
+    limbs = Limbs.of(skeleton, measured=measured)
+    found = verdicts(limbs, CutRules.parse(groups, "test"))
     return {
         (one.rule, one.limb.name if isinstance(one, Demand) else one.branch): one for one in found
     }
@@ -46,6 +49,17 @@ def test_a_branch_just_over_the_limit_is_doubtful() -> None:
     assert isinstance(long, Demand) and long.doubts == ("only 0.01 m over the limit",)
 
 
+def test_a_branch_just_under_the_limit_goes_for_review_where_a_scan_may_hide_its_tip() -> None:
+    limit = {"longer_than": 0.30}
+    branch = "side_branches", "side branch 1"
+    seen = said(drawn(), measured=True, side_branches=limit)[branch]
+    assert isinstance(seen, Demand) and seen.because == "0.29 m of it seen, limit 0.3 m"
+    assert seen.doubts == ("0.01 m under the limit: its tip may be hidden",)
+    assert why(said(drawn(), side_branches=limit)[branch]) == "0.29 m long, not over 0.3 m"
+    far = said(drawn(), measured=True, side_branches={"longer_than": 0.34})[branch]
+    assert why(far) == "0.29 m long, not over 0.34 m"
+
+
 def test_leaders_far_apart_and_low_ones_stay() -> None:
     found = said(drawn())
     assert why(found["spacing", "leader 1"]) == (
@@ -76,6 +90,19 @@ def test_of_two_alike_the_less_sure_goes_then_the_shorter_and_both_are_doubtful(
     short = drawn("l\nl    l\nlbbb lb\nl    l\nl    l\nssstss\n   t\n   o")
     goes = said(short, spacing={"closest": 0.6})["spacing", "leader 2"]
     assert isinstance(goes, Demand) and goes.doubts == ("leader 2 is the shorter of two alike",)
+
+
+def test_where_it_is_not_plain_which_leader_goes_the_branches_of_both_are_planned() -> None:
+    close = {"closest": 0.6}
+    branch = "side_branches", "side branch 1"
+    picture = drawn("     l\nl    l\nlbbb lb\nl    l\nl    l\nssstss\n   t\n   o")
+    kept = said(picture, measured=True, spacing=close)[branch]
+    assert isinstance(kept, Demand)
+    assert kept.doubts == ("only if leader 1 stays, which is not plain",)
+    assert why(said(picture, spacing=close)[branch]) == "comes down by another rule"
+    thin = thinned(picture, "leader 1", 0.006)
+    plain = said(thin, measured=True, spacing=close)[branch]
+    assert why(plain) == "comes down by another rule"
 
 
 def test_leaders_without_height_in_common_are_not_compared() -> None:

@@ -1,8 +1,8 @@
 """How sure it is that a cut is right.
 
-For a side branch a logistic model over its evidence, fitted to simulated trees by `python -m
-bench.fit_cuts`: the probability that the rules ask for that cut on the true tree. For a leader the
-confidence of its least sure edge.
+Logistic models over the evidence, fitted to simulated trees by `python -m bench.fit_cuts`: the
+probability that the rules ask for that cut on the true tree. For a side branch over seven things
+known of it; for a leader, of which there are few to learn from, over its least sure edge alone.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from prunus.measure.cuts.evidence import Evidence
 from prunus.model import Label
 
 SHIPPED = Path(__file__).parents[2] / "weights" / "cuts.toml"
-"""The model that the package ships."""
+"""The models that the package ships."""
 LEAST = 0.02
 """Confidences below are taken for it."""
 FAR = 0.10
@@ -46,35 +46,35 @@ class Model:
     usual: dict[str, float]
 
     @classmethod
-    def from_toml(cls, path: Path) -> Model:
-        """The model in a file."""
-        held = tomllib.loads(path.read_text(encoding="utf-8"))
+    def from_toml(cls, path: Path, part: str) -> Model:
+        """The model in one part of a file: `side_branches` or `leaders`."""
+        held = tomllib.loads(path.read_text(encoding="utf-8"))[part]
         return cls(held["offset"], held["weight"], held["usual"])
 
-    def to_toml(self) -> str:
-        """The file that `from_toml` reads."""
-        made = "# The confidence in a cut of a side branch, made by `python -m bench.fit_cuts`."
-        lines = [made, f"offset = {self.offset:.4f}"]
+    def to_toml(self, part: str) -> str:
+        """The part of a file that `from_toml` reads."""
+        lines = [f"[{part}]", f"offset = {self.offset:.4f}"]
         for name in ("weight", "usual"):
-            lines += ["", f"[{name}]"]
+            lines += ["", f"[{part}.{name}]"]
             lines += [f"{key} = {value:.4f}" for key, value in getattr(self, name).items()]
         return "\n".join(lines) + "\n"
 
     def __call__(self, evidence: Evidence) -> float:
-        """The probability that the cut of a side branch is right; unknown evidence are as usual."""
-        found = {key: value for key, value in features(evidence).items() if math.isfinite(value)}
+        """The probability that a cut is right; unknown evidence is as usual."""
+        known = {key: value for key, value in features(evidence).items() if math.isfinite(value)}
+        found = {key: known[key] for key in self.weight if key in known}
         odds = sum(self.weight[key] * (value - self.usual[key]) for key, value in found.items())
         return 1 / (1 + math.exp(-self.offset - odds))
 
 
 @cache
-def shipped_model() -> Model:
-    """The model that the package ships."""
-    return Model.from_toml(SHIPPED)
+def shipped_model(part: str = "side_branches") -> Model:
+    """The model that the package ships for cuts of `side_branches`, or through `leaders`."""
+    return Model.from_toml(SHIPPED, part)
 
 
 def confidence_of(label: Label, evidence: Evidence) -> float:
     """The confidence in a cut of a branch of that label; 0 where nothing is known of its edges."""
     if not math.isfinite(evidence.least):
         return 0.0
-    return shipped_model()(evidence) if label == Label.SIDE_BRANCH else evidence.least
+    return shipped_model("side_branches" if label == Label.SIDE_BRANCH else "leaders")(evidence)

@@ -26,7 +26,7 @@ def doubts_of(demand: Demand, evidence: Evidence, confidence: float, rules: CutR
     if demand.limb.label == Label.LEADER and getattr(rules, demand.rule).always_review:
         found.append("it goes through a leader")
     if confidence < review.confidence:
-        found.append(f"confidence {confidence:.2f}, under {review.confidence:g}")
+        found.append(f"confidence {_floor(confidence):.2f}, under {review.confidence:g}")
     if evidence.least < review.edge:
         found.append(f"one of its edges has confidence {evidence.least:.2f}")
     if evidence.path < review.path:
@@ -40,6 +40,8 @@ def doubts_of(demand: Demand, evidence: Evidence, confidence: float, rules: CutR
     if demand.limb.label == Label.SIDE_BRANCH:
         if evidence.thick > review.thick:
             found.append(f"{evidence.thick:.0%} as thick as its leader: it may be one")
+        if evidence.diameter > review.stout:
+            found.append(f"{1e3 * evidence.diameter:.0f} mm thick: it may be a leader")
         if evidence.upright < review.level:
             found.append("its leader lies level there: it may be a support")
         if evidence.behind > review.behind:
@@ -49,6 +51,11 @@ def doubts_of(demand: Demand, evidence: Evidence, confidence: float, rules: CutR
         if evidence.touch < TOUCH:
             found.append(f"its tip touches {evidence.touched}: it may belong to it")
     return found
+
+
+def _floor(share: float) -> float:
+    """A share rounded down to hundredths: what is under a limit reads so."""
+    return math.floor(100 * share) / 100
 
 
 def doubts_around(

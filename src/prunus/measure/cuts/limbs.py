@@ -74,14 +74,20 @@ class Limb:
 
 @dataclass(frozen=True, eq=False)
 class Limbs:
-    """A skeleton in the house frame and its branches."""
+    """A skeleton in the house frame and its branches.
+
+    `measured`: its lengths are what a scan shows, which may hide tips; else they are taken as told.
+    """
 
     skeleton: Skeleton
     all: tuple[Limb, ...]
     owner: Ints
+    measured: bool = False
 
     @classmethod
-    def of(cls, skeleton: Skeleton, names: list[str] | None = None) -> Limbs:
+    def of(
+        cls, skeleton: Skeleton, names: list[str] | None = None, *, measured: bool = False
+    ) -> Limbs:
         """The limbs of a skeleton in the house frame (Z up); `names` of its branches, if known."""
         found = branches(skeleton)
         owner = branch_of_rows(found, len(skeleton))
@@ -92,7 +98,7 @@ class Limbs:
             parent = int(owner[branch.rows[0]])
             above = limbs[parent] if parent >= 0 else None
             limbs.append(_limb(skeleton, branch, number, names[number], parent, above, far))
-        return cls(skeleton, tuple(limbs), owner)
+        return cls(skeleton, tuple(limbs), owner, measured)
 
     def with_label(self, label: Label) -> list[Limb]:
         """The limbs of a label, by where they stand along the row."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,7 +30,7 @@ class Demand:
     """A cut that a rule asks for: `along` a limb, metres from its start, and why.
 
     `stub` is the wood left between bark and blade, NaN where the branch is only shortened;
-    `doubts` are what the rule itself is unsure of.
+    `doubts` are what the rule itself is unsure of; `chosen` where it took one of two alike.
     """
 
     rule: str
@@ -39,6 +39,7 @@ class Demand:
     stub: float
     because: str
     doubts: tuple[str, ...] = ()
+    chosen: bool = False
 
 
 @dataclass(frozen=True)
@@ -51,13 +52,33 @@ class Left:
 
 
 Verdict = Demand | Left
-Rule = Callable[[Limbs, CutRules, Bools], list[Verdict]]
 
 
-def spacing(limbs: Limbs, rules: CutRules, gone: Bools) -> list[Verdict]:
+@dataclass(frozen=True, eq=False)
+class Down:
+    """Rows (M,) that come down by the rules before; `unsure` those by doubtful choices alone."""
+
+    rows: Bools
+    unsure: Bools
+
+    def and_by(self, limbs: Limbs, said: list[Verdict]) -> Down:
+        """These, and what comes down by what a rule said."""
+        rows, unsure = self.rows.copy(), self.unsure.copy()
+        for one in said:
+            if isinstance(one, Demand):
+                gone = limbs.beyond(one.limb, one.along)
+                unsure = np.where(gone & ~rows, one.chosen, unsure & ~(gone & (not one.chosen)))
+                rows |= gone
+        return Down(rows, unsure)
+
+
+Rule = Callable[[Limbs, CutRules, Down], list[Verdict]]
+
+
+def spacing(limbs: Limbs, rules: CutRules, down: Down) -> list[Verdict]:
     """Of two leaders too close to each other at mid height the weaker goes; the closest first."""
     closest = rules.spacing.closest
-    leaders = [limb for limb in limbs.with_label(Label.LEADER) if not _is_gone(limb, gone)]
+    leaders = [limb for limb in limbs.with_label(Label.LEADER) if not _is_gone(limb, down.rows)]
     pairs = sorted(
         (_apart(one, other), first, first + 1 + second)
         for first, one in enumerate(leaders)
@@ -71,16 +92,17 @@ def spacing(limbs: Limbs, rules: CutRules, gone: Bools) -> list[Verdict]:
         number = first if weaker is leaders[first] else second
         other = leaders[second if number == first else first]
         because = f"{apart:.2f} m from {other.name} at mid height, under {closest:g} m; {how}"
-        goes[number] = _at_foot("spacing", weaker, rules.spacing.stub, because, doubts)
+        cut = _at_foot("spacing", weaker, rules.spacing.stub, because, doubts)
+        goes[number] = replace(cut, chosen=bool(doubts) and limbs.measured)
     return [goes.get(n) or _kept_by_spacing(n, leaders, pairs, goes, closest)
             for n in range(len(leaders))]  # fmt: skip
 
 
-def height(limbs: Limbs, rules: CutRules, gone: Bools) -> list[Verdict]:
+def height(limbs: Limbs, rules: CutRules, down: Down) -> list[Verdict]:
     """Leaders that reach too high over where they leave the support are shortened."""
     verdicts: list[Verdict] = []
     for limb in limbs.with_label(Label.LEADER):
-        if _is_gone(limb, gone):
+        if _is_gone(limb, down.rows):
             verdicts.append(Left("height", limb.name, "comes down by another rule"))
             continue
         foot = _foot_on_support(limbs, limb)
@@ -95,24 +117,34 @@ def height(limbs: Limbs, rules: CutRules, gone: Bools) -> list[Verdict]:
     return verdicts
 
 
-def side_branches(limbs: Limbs, rules: CutRules, gone: Bools) -> list[Verdict]:
+def side_branches(limbs: Limbs, rules: CutRules, down: Down) -> list[Verdict]:
     """Side branches of leaders that are longer than the limit go, down to a stub."""
     limit = rules.side_branches.longer_than
+    least = limit - (rules.review.hidden if limbs.measured else 0.0)
     verdicts: list[Verdict] = []
     for limb in limbs.with_label(Label.SIDE_BRANCH):
-        why = _not_a_case(limbs, limb, gone)
-        if why is None and limb.reach <= limit + GRID:
+        why = _not_a_case(limbs, limb, down)
+        if why is None and limb.reach <= least + GRID:
             why = f"{limb.reach:.2f} m long, not over {limit:g} m"
         if why is None and limb.bark + rules.side_branches.stub >= limb.along[-1]:
             why = "does not stand clear of its leader"
         if why is not None:
             verdicts.append(Left("side_branches", limb.name, why))
             continue
-        because = f"{limb.reach:.2f} m long, over {limit:g} m"
-        near = limb.reach - limit < rules.review.near_limit
-        doubts = (f"only {limb.reach - limit:.2f} m over the limit",) if near else ()
+        because, doubts = _long(limb.reach, limit, rules.review.near_limit)
+        if _is_gone(limb, down.rows):
+            doubts += (f"only if {limbs.all[limb.parent].name} stays, which is not plain",)
         verdicts.append(_at_foot("side_branches", limb, rules.side_branches.stub, because, doubts))
     return verdicts
+
+
+def _long(reach: float, limit: float, near: float) -> tuple[str, tuple[str, ...]]:
+    """Why a side branch goes that is so long, and the doubts about that."""
+    if reach <= limit + GRID:
+        hidden = f"{limit - reach:.2f} m under the limit: its tip may be hidden"
+        return f"{reach:.2f} m of it seen, limit {limit:g} m", (hidden,)
+    doubts = (f"only {reach - limit:.2f} m over the limit",) if reach - limit < near else ()
+    return f"{reach:.2f} m long, over {limit:g} m", doubts
 
 
 RULES: tuple[Rule, ...] = (spacing, height, side_branches)
@@ -121,17 +153,16 @@ RULES: tuple[Rule, ...] = (spacing, height, side_branches)
 
 def verdicts(limbs: Limbs, rules: CutRules) -> list[Verdict]:
     """What every rule says of every branch that it looks at."""
-    gone = np.zeros(len(limbs.skeleton), np.bool_)
+    nothing = np.zeros(len(limbs.skeleton), np.bool_)
+    down = Down(nothing, nothing)
     found: list[Verdict] = []
     for rule in RULES:
         name = rule.__name__
         if not getattr(rules, name).apply:
             found.append(Left(name, "every branch", "the rule is switched off"))
             continue
-        said = rule(limbs, rules, gone)
-        for one in said:
-            if isinstance(one, Demand):
-                gone |= limbs.beyond(one.limb, one.along)
+        said = rule(limbs, rules, down)
+        down = down.and_by(limbs, said)
         found += said
     return found
 
@@ -144,10 +175,10 @@ def _is_gone(limb: Limb, gone: Bools) -> bool:
     return bool(gone[limb.rows[-1]])
 
 
-def _not_a_case(limbs: Limbs, limb: Limb, gone: Bools) -> str | None:
+def _not_a_case(limbs: Limbs, limb: Limb, down: Down) -> str | None:
     """Why a side branch is none that the rule is for; None where it is one."""
     parent = limbs.parent_of(limb)
-    if _is_gone(limb, gone):
+    if _is_gone(limb, down.rows & ~down.unsure):
         return "comes down by another rule"
     if parent is None:
         return "leaves nothing"

@@ -67,8 +67,10 @@ class Review(_Group):
     past: float = Field(ge=0)
     level: float = Field(ge=0, le=90)
     near_limit: float = Field(ge=0, le=1)
+    hidden: float = Field(ge=0, le=1)
     other_wood: float = Field(ge=0, le=1)
     thick: float = Field(gt=0, le=10)
+    stout: float = Field(gt=0, le=1)
     seen: float = Field(ge=0, le=1)
     free_angle: float = Field(ge=0, le=90)
 
