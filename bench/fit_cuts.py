@@ -15,16 +15,17 @@ import numpy as np
 
 from bench.cuts import Judged, outcomes
 from prunus.io.safely import write_bytes
-from prunus.learn.logistic import fit_logistic
+from prunus.learn.logistic import fit_odds
 from prunus.measure.cuts import shipped_rules
-from prunus.measure.cuts.confidence import SHIPPED, Model, features
-from prunus.model import Bools, Floats, Ints
+from prunus.measure.cuts.confidence import SHIPPED, features
+from prunus.model import Bools, Ints
 from prunus.simulate.settings import Setting
 
 OFF = 0.03
 """A cut that is farther off along its branch is not right here, metres."""
 SETTINGS: tuple[Setting, ...] = ("field", "clean")
 FOLDS = 8
+Told = dict[str, float]
 LIMITS = (0.5, 0.7, 0.8, 0.85, 0.9, 0.91, 0.92, 0.93, 0.94, 0.945, 0.95, 0.955, 0.96, 0.97)
 
 
@@ -33,29 +34,14 @@ def is_right(one: Judged) -> bool:
     return one.word == "needless" or (one.word == "right" and abs(one.off) <= OFF)
 
 
-def fitted(values: Floats, names: list[str], right: Bools) -> Model:
-    """The model of some features (C, F)."""
-    usual = np.nanmean(values, axis=0)
-    scale = np.nanstd(values, axis=0)
-    known = np.where(np.isfinite(values), (values - usual) / scale, 0.0)
-    weights = fit_logistic(known, right)
-    weight = dict(zip(names, (weights[:-1] / scale).tolist(), strict=True))
-    return Model(float(weights[-1]), weight, dict(zip(names, usual.tolist(), strict=True)))
-
-
-def guessed(model: Model, values: Floats, names: list[str]) -> Floats:
-    """The probabilities (C,) that a model gives."""
-    weight, usual = (np.array([part[n] for n in names]) for part in (model.weight, model.usual))
-    odds = np.nansum((values - usual) * weight, axis=1) + model.offset
-    return np.asarray(1 / (1 + np.exp(-odds)))
-
-
-def report(values: Floats, names: list[str], right: Bools, tree: Ints, clear: Bools) -> None:
+def report(told: list[Told], right: Bools, tree: Ints, clear: Bools) -> None:
     """Print what each limit lets through of cuts that nothing else speaks against (C,)."""
     guess = np.zeros(len(right))
     for fold in range(FOLDS):
-        held = tree % FOLDS == fold
-        guess[held] = guessed(fitted(values[~held], names, right[~held]), values[held], names)
+        own = np.flatnonzero(tree % FOLDS == fold)
+        others = np.flatnonzero(tree % FOLDS != fold)
+        odds = fit_odds([told[row] for row in others], right[others])
+        guess[own] = [odds(told[row]) for row in own]
     print(f"{len(right)} cuts, {right.mean():.1%} right; {clear.mean():.0%} have no other doubt")
     for limit in LIMITS:
         for name, some in (("all", guess >= limit), ("no other doubt", clear & (guess >= limit))):
@@ -83,25 +69,23 @@ def main() -> None:
 
 def written(field: list[tuple[int, Judged]], every: list[tuple[int, Judged]]) -> str:
     """The file of the models, from planned cuts and the seeds of their trees."""
-    made = "# The confidence in cuts, made by `python -m bench.fit_cuts`.\n\n"
+    made = "# The confidence in cuts, made by `python -m bench.fit_cuts`."
     shoots = [(tree, one) for tree, one in field if one.cut.rule == "side_branches"]
-    names, values, right = _table([one for _, one in shoots])
+    told, right = _told([one for _, one in shoots])
     clear = [
         not [r for r in one.cut.reasons if not r.startswith("confidence")] for _, one in shoots
     ]
-    report(values, names, right, np.array([tree for tree, _ in shoots]), np.array(clear))
-    side_branches = fitted(values, names, right)
-    names, values, right = _table([one for _, one in every if one.cut.rule == "spacing"])
+    report(told, right, np.array([tree for tree, _ in shoots]), np.array(clear))
+    lines = fit_odds(told, right).lines("side_branches")
+    told, right = _told([one for _, one in every if one.cut.rule == "spacing"])
     print(f"{len(right)} cuts through leaders, {right.mean():.1%} right")
-    leaders = fitted(values[:, :1], names[:1], right)
-    return made + side_branches.to_toml("side_branches") + "\n" + leaders.to_toml("leaders")
+    leaders = fit_odds([{"least": one["least"]} for one in told], right)
+    return "\n".join([made, *lines, *leaders.lines("leaders")]) + "\n"
 
 
-def _table(cuts: list[Judged]) -> tuple[list[str], Floats, Bools]:
-    """The names (F) and values (C, F) of the features of cuts, and which (C,) are right."""
-    rows = [features(one.cut.evidence) for one in cuts]
-    values = np.array([list(row.values()) for row in rows])
-    return list(rows[0]), values, np.array([is_right(one) for one in cuts])
+def _told(cuts: list[Judged]) -> tuple[list[Told], Bools]:
+    """The features of cuts, and which (C,) are right."""
+    return [features(one.cut.evidence) for one in cuts], np.array([is_right(one) for one in cuts])
 
 
 if __name__ == "__main__":

@@ -8,34 +8,22 @@ be meant is told apart from this. A ridge keeps weights small where there is lit
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 
 import numpy as np
 
 from bench.trust import CASES, Tried, tried
 from prunus.io.safely import write_bytes
-from prunus.learn.logistic import fit_logistic
-from prunus.measure.odds import Odds
+from prunus.learn.logistic import fit_odds
 from prunus.measure.trust import Model
 from prunus.measure.trust.evidence import Evidence, of_branches, of_edges
 from prunus.measure.trust.model import SHIPPED
-from prunus.model import Bools, Label
+from prunus.model import Label
 
 RIDGE = 2.0
 WRONG_TREE = 2.0
 """Where so many edits an edge are needed, it is the skeleton of another tree."""
 APART = 1000
 """The cases have seeds so far apart."""
-
-
-def odds_of(evidence: Sequence[Evidence], right: Bools) -> Odds:
-    """The odds that fit some evidence (C) and what was right (C,)."""
-    names = list(evidence[0])
-    values = np.array([[one[name] for name in names] for one in evidence])
-    usual, scale = np.nanmean(values, axis=0), np.nanstd(values, axis=0) + 1e-9
-    weights = fit_logistic(np.nan_to_num((values - usual) / scale), right, RIDGE)
-    weight = dict(zip(names, (weights[:-1] / scale).tolist(), strict=True))
-    return Odds(float(weights[-1]), weight, dict(zip(names, usual.tolist(), strict=True)))
 
 
 def fitted(some: list[Tried]) -> Model:
@@ -47,13 +35,13 @@ def fitted(some: list[Tried]) -> Model:
     branch = {}
     for kind in Label:
         own = np.flatnonzero(label == kind)
-        branch[kind] = odds_of([flat[row] for row in own], right[own])
+        branch[kind] = fit_odds([flat[row] for row in own], right[own], RIDGE)
     edges: list[Evidence] = []
     for one, evidence in zip(some, told, strict=True):
         pairs = zip(one.label.tolist(), evidence, strict=True)
         trust = np.array([branch[Label(kind)](known) for kind, known in pairs])
         edges += of_edges(one.known, trust)
-    return Model(branch, odds_of(edges, np.concatenate([one.unchanged for one in some])))
+    return Model(branch, fit_odds(edges, np.concatenate([one.unchanged for one in some]), RIDGE))
 
 
 def main() -> None:

@@ -1,11 +1,11 @@
 """The confidence that a cut is right."""
 
+import math
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
-from prunus.measure.cuts.confidence import Model, confidence_of, features, shipped_model
+from prunus.measure.cuts.confidence import confidence_of, features, shipped_odds
 from prunus.measure.cuts.evidence import Evidence
 from prunus.model import Label
 
@@ -17,21 +17,23 @@ GOOD = Evidence(
 )  # fmt: skip
 
 
+def sure(evidence: Evidence) -> float:
+    return confidence_of(Label.SIDE_BRANCH, evidence)
+
+
 def test_what_speaks_against_a_branch_lowers_the_confidence() -> None:
-    model = shipped_model()
     for name, worse in (
         ("least", 0.5), ("touch", 0.01), ("bend", 40.0), ("slant", 3.0), ("spread", 0.02),
         ("aside", 0.015), ("behind", 0.5),
     ):  # fmt: skip
-        assert model(replace(GOOD, **{name: worse})) < model(GOOD), name
+        assert sure(replace(GOOD, **{name: worse})) < sure(GOOD), name
 
 
 def test_what_is_unknown_counts_as_usual() -> None:
-    model = shipped_model()
+    usual = shipped_odds().usual
     blind = replace(GOOD, spread=NAN, aside=NAN, behind=NAN)
-    names = ("spread", "aside", "behind")
-    odds = sum(model.weight[k] * (features(GOOD)[k] - model.usual[k]) for k in names)
-    assert (model(blind) < model(GOOD)) == (odds > 0)
+    told = replace(GOOD, spread=usual["spread"], aside=math.exp(usual["aside"]))
+    assert sure(blind) == pytest.approx(sure(replace(told, behind=usual["behind"])))
 
 
 def test_a_branch_of_which_nothing_is_known_has_no_confidence() -> None:
@@ -40,20 +42,14 @@ def test_a_branch_of_which_nothing_is_known_has_no_confidence() -> None:
 
 
 def test_no_cut_through_a_leader_is_so_sure_that_a_machine_may_make_it() -> None:
-    sure, doubted = replace(GOOD, least=1.0), replace(GOOD, least=0.5)
-    assert confidence_of(Label.LEADER, doubted) < confidence_of(Label.LEADER, sure) < 0.5
-
-
-def test_a_model_reads_what_it_wrote(tmp_path: Path) -> None:
-    model = Model(0.5, {"least": 1.25}, {"least": -0.125})
-    (tmp_path / "model.toml").write_text(model.to_toml("leaders"))
-    assert Model.from_toml(tmp_path / "model.toml", "leaders") == model
+    fine, doubted = replace(GOOD, least=1.0), replace(GOOD, least=0.5)
+    assert confidence_of(Label.LEADER, doubted) < confidence_of(Label.LEADER, fine) < 0.5
 
 
 def test_the_shipped_model_knows_every_feature() -> None:
-    model = shipped_model()
-    assert list(model.weight) == list(model.usual) == list(features(GOOD))
-    assert 0.5 < model(GOOD) < 1
+    odds = shipped_odds()
+    assert list(odds.weight) == list(odds.usual) == list(features(GOOD))
+    assert 0.5 < sure(GOOD) < 1
 
 
 def test_unknown_confidences_do_not_pass_for_known() -> None:

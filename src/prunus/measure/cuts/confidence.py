@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import math
 import tomllib
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from prunus.measure.cuts.evidence import Evidence
+from prunus.measure.odds import Odds
 from prunus.model import Label
 
 SHIPPED = Path(__file__).parents[2] / "weights" / "cuts.toml"
@@ -37,44 +37,15 @@ def features(evidence: Evidence) -> dict[str, float]:
     }
 
 
-@dataclass(frozen=True)
-class Model:
-    """Log odds that a cut is right: an offset, and for each feature a weight on what is unusual."""
-
-    offset: float
-    weight: dict[str, float]
-    usual: dict[str, float]
-
-    @classmethod
-    def from_toml(cls, path: Path, part: str) -> Model:
-        """The model in one part of a file: `side_branches` or `leaders`."""
-        held = tomllib.loads(path.read_text(encoding="utf-8"))[part]
-        return cls(held["offset"], held["weight"], held["usual"])
-
-    def to_toml(self, part: str) -> str:
-        """The part of a file that `from_toml` reads."""
-        lines = [f"[{part}]", f"offset = {self.offset:.4f}"]
-        for name in ("weight", "usual"):
-            lines += ["", f"[{part}.{name}]"]
-            lines += [f"{key} = {value:.4f}" for key, value in getattr(self, name).items()]
-        return "\n".join(lines) + "\n"
-
-    def __call__(self, evidence: Evidence) -> float:
-        """The probability that a cut is right; unknown evidence is as usual."""
-        known = {key: value for key, value in features(evidence).items() if math.isfinite(value)}
-        found = {key: known[key] for key in self.weight if key in known}
-        odds = sum(self.weight[key] * (value - self.usual[key]) for key, value in found.items())
-        return 1 / (1 + math.exp(-self.offset - odds))
-
-
 @cache
-def shipped_model(part: str = "side_branches") -> Model:
+def shipped_odds(part: str = "side_branches") -> Odds:
     """The model that the package ships for cuts of `side_branches`, or through `leaders`."""
-    return Model.from_toml(SHIPPED, part)
+    return Odds.of(tomllib.loads(SHIPPED.read_text(encoding="utf-8"))[part])
 
 
 def confidence_of(label: Label, evidence: Evidence) -> float:
     """The confidence in a cut of a branch of that label; 0 where nothing is known of its edges."""
     if not math.isfinite(evidence.least):
         return 0.0
-    return shipped_model("side_branches" if label == Label.SIDE_BRANCH else "leaders")(evidence)
+    odds = shipped_odds("side_branches" if label == Label.SIDE_BRANCH else "leaders")
+    return odds(features(evidence))
