@@ -92,12 +92,14 @@ class Limbs:
         found = branches(skeleton)
         owner = branch_of_rows(found, len(skeleton))
         names = names or branch_names(skeleton, found)
-        far = _farthest(skeleton)
+        lengths = skeleton.lengths
+        far = _farthest(skeleton, lengths)
         limbs: list[Limb] = []
         for number, branch in enumerate(found):
             parent = int(owner[branch.rows[0]])
             above = limbs[parent] if parent >= 0 else None
-            limbs.append(_limb(skeleton, branch, number, names[number], parent, above, far))
+            name = names[number]
+            limbs.append(_limb(skeleton, branch, number, name, parent, above, far, lengths))
         return cls(skeleton, tuple(limbs), owner, measured)
 
     def with_label(self, label: Label) -> list[Limb]:
@@ -136,18 +138,19 @@ def _limb(
     parent: int,
     above: Limb | None,
     far: Floats,
+    lengths: Floats,
 ) -> Limb:
     rows = branch.rows
-    along = np.concatenate([[0.0], skeleton.lengths[rows[1:]].cumsum()])
+    along = np.concatenate([[0.0], lengths[rows[1:]].cumsum()])
     xyz = skeleton.xyz[rows]
     bark = 0.0 if above is None else _out_of_bark(xyz, along, above, skeleton.radius[rows[0]])
     reach = float(along[1] + far[rows[1]]) - bark
     return Limb(number, name, branch.label, rows, xyz, along, parent, bark, reach)
 
 
-def _farthest(skeleton: Skeleton) -> Floats:
+def _farthest(skeleton: Skeleton, lengths: Floats) -> Floats:
     """The longest way (M,) from each row to a tip, metres."""
-    far, lengths = np.zeros(len(skeleton)), skeleton.lengths
+    far = np.zeros(len(skeleton))
     for row in range(len(skeleton) - 1, 0, -1):
         parent = skeleton.parent[row]
         far[parent] = max(far[parent], far[row] + lengths[row])

@@ -11,6 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from prunus.kernels.cones import greatest_cosines
 from prunus.kernels.neighbours import nearest
 from prunus.measure.cuts.nearby import AROUND
 from prunus.model import Floats, Ints
@@ -113,9 +114,7 @@ def _free_angles(ways: Floats, off: Floats, away: Floats) -> Floats:
 def _most(ways: Floats, off: Floats, away: Floats, low: float, high: float) -> Floats:
     """The greatest cosine (D,) of each way with points between two distances; -1 without any."""
     rows = np.flatnonzero((away >= low) & (away < high))
-    if len(rows) == 0:
-        return np.full(len(ways), -1.0)
-    return np.asarray((ways @ (off[rows] / away[rows, None]).T).max(axis=1))
+    return greatest_cosines(ways, off[rows], away[rows])
 
 
 def _first(way: Floats, off: Floats, away: Floats) -> float:
