@@ -89,7 +89,7 @@ def outcomes(
     before = time.process_time()
     plan = plan_cuts(fine, points, rules)
     spent = time.process_time() - before
-    limbs = Limbs.of(fine.skeleton)
+    limbs = Limbs.of(fine.skeleton, fine.names)
     true, place = tree, replace(tree, truth=as_shown(scan, setting))
     return judged(true, plan, rules, spent, limbs), judged(place, plan, rules, spent, limbs)
 
