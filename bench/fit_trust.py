@@ -1,8 +1,8 @@
 """`python -m bench.fit_trust [--trees 60] [--seed 500000] [--write]`: how far to trust a skeleton.
 
 Logistic regressions over what is known of the branches and edges that the chain finds on simulated
-scans (see `bench.trust`), those left out of which the wrong tree was taken: whether another could
-be meant is told apart from this. A ridge keeps weights small where there is little to learn from.
+scans (see `bench.trust`), those among them of which the wrong tree was taken. A ridge keeps weights
+small where there is little to learn from.
 """
 
 from __future__ import annotations
@@ -20,8 +20,6 @@ from prunus.measure.trust.model import SHIPPED
 from prunus.model import Label
 
 RIDGE = 2.0
-WRONG_TREE = 2.0
-"""Where so many edits an edge are needed, it is the skeleton of another tree."""
 APART = 1000
 """The cases have seeds so far apart."""
 
@@ -55,7 +53,7 @@ def main() -> None:
     for number, case in enumerate(CASES):
         first = chosen.seed + APART * number
         found = [tried(seed, *case) for seed in range(first, first + chosen.trees)]
-        some += [one for one in found if one is not None and one.ratio < WRONG_TREE]
+        some += [one for one in found if one is not None]
         print(f"{case}: {len(some)} trees so far", flush=True)
     model = fitted(some)
     print(model.to_toml())

@@ -55,7 +55,8 @@ class Tried:
         """All that is known of the skeleton."""
         result = self.result
         told = judged(result.in_house, result.graph, shipped_score())
-        return Known(result.in_house, result.refined, told.gain, told.likely)
+        raw = result.isolated is not None
+        return Known(result.in_house, result.refined, told.gain, told.likely, raw)
 
 
 def tried(seed: int, setting: Setting, raw: bool) -> Tried | None:

@@ -81,7 +81,8 @@ class Result:
         if len(self.in_house) == 1 or not goes_by_learned_score(self.graph, self.params):
             return None
         told = judged(self.in_house, self.graph, shipped_score())
-        return trust_in(Known(self.in_house, self.refined, told.gain, told.likely))
+        raw = self.isolated is not None
+        return trust_in(Known(self.in_house, self.refined, told.gain, told.likely, raw))
 
     @cached_property
     def review(self) -> list[str]:

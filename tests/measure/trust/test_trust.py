@@ -1,6 +1,7 @@
 """How far to trust a skeleton: probabilities that follow the evidence."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -29,7 +30,7 @@ def found() -> Result:
 
 def known(result: Result) -> Known:
     told = judged(result.in_house, result.graph, shipped_score())
-    return Known(result.in_house, result.refined, told.gain, told.likely)
+    return Known(result.in_house, result.refined, told.gain, told.likely, raw=False)
 
 
 def test_what_is_not_known_counts_as_usual() -> None:
@@ -73,7 +74,7 @@ def test_without_confidence_there_is_less_trust(found: Result) -> None:
         skeleton.xyz, skeleton.parent, skeleton.label,
         confidence=skeleton.confidence / 2, superpoint=skeleton.superpoint,
     )  # fmt: skip
-    less = trust_in(Known(doubtful, told.fine, told.gain, told.likely))
+    less = trust_in(replace(told, skeleton=doubtful))
     assert less.tree < trust_in(told).tree - 0.05
 
 

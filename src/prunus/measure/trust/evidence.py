@@ -26,13 +26,14 @@ class Known:
     """A skeleton in the house frame and all that is known of it.
 
     `fine` is the same refined; gain, likely (M, L) what each edge brings under each label, and how
-    likely that is by the network (`search.judged`).
+    likely that is by the network (`search.judged`); `raw`: it was taken out of a raw scan.
     """
 
     skeleton: Skeleton
     fine: Refined
     gain: Floats
     likely: Floats
+    raw: bool
 
 
 Evidence = dict[str, float]
@@ -41,12 +42,11 @@ Evidence = dict[str, float]
 def of_branches(known: Known) -> list[Evidence]:
     """The evidence of each branch, in the order of `measure.branches`.
 
-    Of its edges, weighted by length: `edges`, the mean logarithm of the confidence, `least` of
-    the least, `first` of that at its foot, `path` of the least on the way from the base to it;
-    `kind`, the mean logarithm of how likely its label is; `rival`, how much more it brings, a
-    metre, under its label than under the next best. Of its shape: `length`, logarithm of metres;
-    `straight`, from foot to tip over that; `bend`, logarithm of the degrees at its foot; `touch`,
-    metres from its tip to the nearest other branch. Of the points: `seen`, the share with any.
+    Of its edges: `least`, the logarithm of the least confidence; `kind`, the mean logarithm, by
+    length, of how likely its label is; `rival`, how much more it brings, a metre, under its label
+    than under the next best. Of its shape: `length`, logarithm of metres; `straight`, from foot to
+    tip over that; `bend`, logarithm of the degrees at its foot; `touch`, metres from its tip to
+    the nearest other branch. `seen`, the share with points; `raw`, 1 in a tree of a raw scan.
     """
     limbs = Limbs.of(known.fine.skeleton).all
     found = branches(known.skeleton)
@@ -56,15 +56,11 @@ def of_branches(known: Known) -> list[Evidence]:
 def _of_branch(known: Known, branch: Branch, limb: Limb) -> Evidence:
     skeleton, rows, label = known.skeleton, branch.rows[1:], int(branch.label)
     weight = skeleton.lengths[rows] + TINY
-    confidence = _log(skeleton.confidence[rows])
     brings = known.gain[rows].sum(axis=0)
     fine = limb.rows[1:]
     beeline = float(np.linalg.norm(skeleton.xyz[rows[-1]] - skeleton.xyz[branch.rows[0]]))
     return {
-        "edges": float(np.average(confidence, weights=weight)),
-        "least": float(confidence.min()),
-        "first": float(confidence[0]),
-        "path": _least_below(skeleton, int(branch.rows[0])),
+        "least": float(_log(skeleton.confidence[rows].min())),
         "kind": float(np.average(_log(known.likely[rows, label]), weights=weight)),
         "rival": float(brings[label] - np.delete(brings, label).max()) / max(branch.length, SHORT),
         "length": math.log(max(branch.length, LEAST)),
@@ -74,6 +70,7 @@ def _of_branch(known: Known, branch: Branch, limb: Limb) -> Evidence:
         "seen": float(
             np.average(known.fine.seen[fine], weights=known.fine.skeleton.lengths[fine] + TINY)
         ),
+        "raw": float(known.raw),
     }
 
 
@@ -103,15 +100,6 @@ def of_edges(known: Known, branch_trust: Floats) -> list[Evidence]:
 
 MOST = 4.0
 """Log odds of a branch are no farther from even."""
-
-
-def _least_below(skeleton: Skeleton, row: int) -> float:
-    """The logarithm of the least confidence on the way from the base to a row."""
-    least = 1.0
-    while row > 0:
-        least = min(least, float(skeleton.confidence[row]))
-        row = int(skeleton.parent[row])
-    return float(_log(least))
 
 
 def _touch(skeleton: Skeleton, rows: Ints) -> float:
