@@ -19,7 +19,7 @@ from prunus.measure.trust.evidence import Evidence, of_branches, of_edges
 from prunus.measure.trust.model import SHIPPED
 from prunus.model import Label
 
-RIDGE = 2.0
+RIDGE = 10.0
 APART = 1000
 """The cases have seeds so far apart."""
 
