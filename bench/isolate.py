@@ -20,7 +20,8 @@ from prunus.evaluate.edits import edits
 from prunus.experiment.orchard import Tree, tree_of
 from prunus.model import Kind, PointCloud
 from prunus.params import Parameters
-from prunus.pipeline import Result, skeletonize
+from prunus.pipeline import skeletonize
+from prunus.result import Result
 from prunus.sensing.isolate import isolate, look_at
 from prunus.sensing.level import find_turn
 from prunus.sensing.orient import local_wood

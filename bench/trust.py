@@ -24,7 +24,8 @@ from prunus.measure import branches
 from prunus.measure.trust import Known
 from prunus.model import Bools, Floats, Ints
 from prunus.params import Parameters
-from prunus.pipeline import Result, skeletonize
+from prunus.pipeline import skeletonize
+from prunus.result import Result
 from prunus.search import shipped_score
 from prunus.search.judged import judged
 from prunus.simulate.scan import simulate_scan

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from prunus.model import PointCloud as PointCloud
     from prunus.model import Skeleton as Skeleton
     from prunus.params import Parameters as Parameters
-    from prunus.pipeline import Result as Result
     from prunus.pipeline import skeletonize as skeletonize
+    from prunus.result import Result as Result
     from prunus.stages.confidence import EdgeScorer as EdgeScorer
 
 __version__ = "0.1.0"
@@ -34,7 +34,7 @@ _HOME = {
     "Parameters": "prunus.params",
     "PointCloud": "prunus.model",
     "PrunusError": "prunus.errors",
-    "Result": "prunus.pipeline",
+    "Result": "prunus.result",
     "Skeleton": "prunus.model",
     "read_cloud": "prunus.intake",
     "read_skeleton": "prunus.io.skeletons",

@@ -17,19 +17,19 @@ from prunus.intake import Scan, open_scan
 from prunus.io.export import write_ply, write_swc
 from prunus.io.inputs import clouds_in, is_one, names_of
 from prunus.io.safely import write_bytes
-from prunus.io.skeletons import TrustRecord, write_skeleton
+from prunus.io.skeletons import write_skeleton
 from prunus.io.tables import csv_bytes, parquet_bytes, without_nan
+from prunus.io.trust import trust_record
 from prunus.kernels.compiled import is_compiled, mark_compiled
 from prunus.measure import branches
 from prunus.measure.cuts import plan_cuts
 from prunus.measure.defined import BRANCH_TRAITS, TREE_TRAITS
-from prunus.measure.names import branch_names
 from prunus.measure.traits import branch_traits, tree_traits
-from prunus.measure.trust import Trust
-from prunus.model import Floats, Label, Skeleton
+from prunus.model import Label
 from prunus.params import Parameters
-from prunus.pipeline import Result, skeletonize
+from prunus.pipeline import skeletonize
 from prunus.report import report_page
+from prunus.result import Result
 from prunus.stages.confidence import EdgeScorer, HandmadeScorer
 from prunus.stages.networks import NetworkScorer
 
@@ -186,30 +186,6 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
     write_skeleton(folder / "refined.json", fine, **evidence)
 
 
-def trust_record(skeleton: Skeleton, trust: Trust | None) -> TrustRecord | None:
-    """The trust in a skeleton, house frame, as `skeleton.json` has it."""
-    if trust is None:
-        return None
-    found = branches(skeleton)
-    names = branch_names(skeleton, found)
-    rows = [
-        {"name": name, "label": one.label.word, "nodes": one.rows.tolist(), "trust": likely}
-        for name, one, likely in zip(names, found, _rounded(trust.branch), strict=True)
-    ]
-    edges = [None, *_rounded(trust.edge[1:])]
-    return TrustRecord.model_validate(
-        {"tree": round(trust.tree, DIGITS), "edges": edges, "branches": rows}
-    )
-
-
-DIGITS = 4
-"""A probability is written with so many."""
-
-
-def _rounded(values: Floats) -> list[float]:
-    return [round(value, DIGITS) for value in values.tolist()]
-
-
 def write_traits(folder: Path, result: Result, name: str) -> list[str]:
     """traits.csv, a row a branch, and tree_traits.csv, one row; the same as Parquet.
 
@@ -260,7 +236,7 @@ def _record(
         "side_branches": len(branches(skeleton, Label.SIDE_BRANCH)),
         "cpu_s": columns[0],
         "wall_s": columns[1],
-        "trust": None if result.trust is None else round(result.trust.tree, DIGITS),
+        "trust": None if result.trust is None else round(result.trust.tree, 4),
         "review": result.review,
         "warnings": [*scan.notes, *result.notes, *result.warnings, *notes],
     }

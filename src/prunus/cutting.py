@@ -21,7 +21,8 @@ from prunus.measure.cuts.plan import as_it_is
 from prunus.measure.cuts.reach import samples
 from prunus.measure.refine import Refined, refined
 from prunus.model import FRAMES, Floats, Label, PointCloud, RigidMotion, Skeleton
-from prunus.pipeline import REFINED_WITH, skeletonize
+from prunus.pipeline import skeletonize
+from prunus.result import REFINED_WITH
 
 SKELETONS = (".json", ".swc")
 OWN = 0.06

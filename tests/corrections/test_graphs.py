@@ -17,7 +17,8 @@ from prunus.errors import PrunusError
 from prunus.io.arrays import read_arrays, write_arrays
 from prunus.model import PointCloud, Skeleton, Superpoints
 from prunus.params import Cover, Parameters
-from prunus.pipeline import Result, skeletonize
+from prunus.pipeline import skeletonize
+from prunus.result import Result
 from tests.conftest import field_scan
 from tests.corrections.conftest import QUICK
 from tests.corrections.test_work import acted, half_of_the_scan, same_state, some_leader

@@ -27,7 +27,7 @@ from prunus.model import (
     Superpoints,
 )
 from prunus.params import Parameters
-from prunus.pipeline import Result
+from prunus.result import Result
 from tests.drawn import TREE, tree
 
 FAR = np.array([612_345.0, 5_123_456.0, 321.0])

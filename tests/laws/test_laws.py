@@ -7,7 +7,8 @@ import pytest
 
 from prunus.model import PointCloud, Skeleton
 from prunus.params import Parameters
-from prunus.pipeline import Result, skeletonize
+from prunus.pipeline import skeletonize
+from prunus.result import Result
 from prunus.rules import offenders
 from prunus.search import learned_score_of, shipped_score, skel_score
 from tests.conftest import simulated

@@ -10,10 +10,11 @@ import pytest
 
 from prunus.measure import branches
 from prunus.measure.cuts import Plan, plan_cuts
-from prunus.pipeline import Result, skeletonize
+from prunus.pipeline import skeletonize
 from prunus.report import report_page
 from prunus.report.cuts import cut_traces
 from prunus.report.scene import scene_traces
+from prunus.result import Result
 from tests.conftest import simulated
 
 GAP = (None, None, None)

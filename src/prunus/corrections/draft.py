@@ -13,7 +13,7 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.model import Floats, Label, SeededGraph, Skeleton, parents_first
-from prunus.pipeline import Result
+from prunus.result import Result
 
 Pair = tuple[int, int]
 Into = Mapping[int, tuple[int, Label]]

@@ -30,7 +30,7 @@ from prunus.model import (
     Superpoints,
 )
 from prunus.params import Parameters
-from prunus.pipeline import Result
+from prunus.result import Result
 from prunus.sensing.isolate import Isolated
 
 Row = tuple[float, float, float]

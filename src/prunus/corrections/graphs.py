@@ -20,7 +20,7 @@ from prunus.intake import Scan
 from prunus.io.safely import remove
 from prunus.model import PointCloud
 from prunus.params import Parameters
-from prunus.pipeline import Result
+from prunus.result import Result
 
 FIRST = 1
 """The line of the journal that says on what it was begun."""

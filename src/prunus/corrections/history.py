@@ -12,7 +12,8 @@ from prunus.corrections.timeline import Line, Timeline
 from prunus.errors import PrunusError
 from prunus.model import Floats, PointCloud
 from prunus.params import Parameters
-from prunus.pipeline import Result, skeletonize
+from prunus.pipeline import skeletonize
+from prunus.result import Result
 
 KEPT = 100
 """So many states up to the one asked for stay in memory."""

@@ -17,7 +17,8 @@ from prunus.io.safely import digest_of
 from prunus.io.skeletons import InputRecord, read_record
 from prunus.model import Skeleton
 from prunus.params import Parameters
-from prunus.pipeline import Result, skeletonize
+from prunus.pipeline import skeletonize
+from prunus.result import Result
 
 Point = tuple[float, float, float]
 

@@ -17,7 +17,8 @@ from prunus.corrections.steps import explicit, place_of
 from prunus.errors import PrunusError
 from prunus.model import Floats, Kind, PointCloud
 from prunus.params import Parameters
-from prunus.pipeline import Result, skeletonize
+from prunus.pipeline import skeletonize
+from prunus.result import Result
 
 Chain = Callable[[PointCloud, Floats | None, Parameters, int], Result]
 """What `Rebuild` runs: on these points, from this base, by these parameters and this seed."""

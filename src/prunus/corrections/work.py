@@ -41,7 +41,7 @@ from prunus.io.classes import write_classes
 from prunus.io.safely import remove
 from prunus.io.skeletons import write_skeleton
 from prunus.model import Skeleton
-from prunus.pipeline import Result
+from prunus.result import Result
 
 SKELETON, CORRECTED, MASK = "skeleton.json", "corrected.json", "mask.ply"
 

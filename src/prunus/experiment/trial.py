@@ -17,7 +17,8 @@ from prunus.io.tables import without_nan
 from prunus.measure import shown
 from prunus.model import Label, Skeleton
 from prunus.params import Parameters
-from prunus.pipeline import Result, skeletonize
+from prunus.pipeline import skeletonize
+from prunus.result import Result
 from prunus.search import learned_score_of, shipped_score, skel_score
 
 Record = dict[str, Any]

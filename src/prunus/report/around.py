@@ -9,8 +9,8 @@ from prunus.io.export import COLOURS
 from prunus.measure import branches, leaders, lengths_by_label
 from prunus.measure.trust import Trust
 from prunus.model import Label, Skeleton
-from prunus.pipeline import Result
 from prunus.report.tables import html_table
+from prunus.result import Result
 
 TRUST_NOTE = (
     '<p class="quiet">Trust: how likely a branch is right (its label, and what it hangs on); '

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from prunus.measure.cuts import Plan
-from prunus.pipeline import Result
 from prunus.report.around import labels_of, leaders_of, review_of, seconds_of, summary_of
 from prunus.report.cuts import cut_traces, cuts_section
 from prunus.report.scene import left_out_traces, scene_traces
+from prunus.result import Result
 
 STYLE = """
 body{font:15px/1.45 system-ui,sans-serif;color:#222;margin:0 auto;max-width:1500px;padding:16px 24px}

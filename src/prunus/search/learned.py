@@ -34,6 +34,7 @@ from prunus.model import (
     SeededGraph,
     Skeleton,
 )  # fmt: skip
+from prunus.params import Parameters
 from prunus.search.directed import Directed
 from prunus.search.eligible import grammar_table
 from prunus.search.refine import refine
@@ -166,6 +167,11 @@ def search_learned(seeded: SeededGraph, score: LearnedScore) -> SearchResult:
     anywhere = np.ones(len(entry), np.bool_)
     best, history = refine(entry, table, grammar_table(tuple(Label)), cost, anywhere)
     return SearchResult(as_skeleton(best, table, seeded), float(history[-1]), history)
+
+
+def goes_by_learned_score(seeded: SeededGraph, params: Parameters) -> bool:
+    """Whether the learned score is asked for, and the scorer tells the categories it takes."""
+    return params.search.score == "learned" and seeded.scored.category.size > 0
 
 
 def learned_score_of(skeleton: Skeleton, seeded: SeededGraph, score: LearnedScore) -> float:

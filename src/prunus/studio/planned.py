@@ -16,7 +16,7 @@ from prunus.measure import branches
 from prunus.measure.cuts import Plan, plan_cuts
 from prunus.measure.refine import refined
 from prunus.model import Kind, Skeleton
-from prunus.pipeline import REFINED_WITH
+from prunus.result import REFINED_WITH
 
 PLAN = "plan.json"
 

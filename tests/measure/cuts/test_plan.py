@@ -10,7 +10,8 @@ from prunus.measure.cuts import CutRules, Plan, plan_cuts, shipped_rules
 from prunus.measure.cuts.limbs import Limbs
 from prunus.measure.cuts.plan import as_it_is
 from prunus.model import Floats, Label, RigidMotion, Skeleton
-from prunus.pipeline import Result, skeletonize
+from prunus.pipeline import skeletonize
+from prunus.result import Result
 from tests.conftest import simulated
 from tests.measure.cuts.trees import drawn
 

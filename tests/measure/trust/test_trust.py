@@ -15,7 +15,8 @@ from prunus.measure.trust.evidence import of_branches
 from prunus.measure.trust.review import review_of
 from prunus.model import Label, Skeleton
 from prunus.params import Parameters
-from prunus.pipeline import Result, skeletonize
+from prunus.pipeline import skeletonize
+from prunus.result import Result
 from prunus.search import shipped_score
 from prunus.search.judged import judged
 from tests.conftest import simulated

@@ -1,0 +1,33 @@
+"""How far to trust a skeleton, as `skeleton.json` has it."""
+
+from __future__ import annotations
+
+from prunus.io.skeletons import TrustRecord
+from prunus.measure.branches import branches
+from prunus.measure.names import branch_names
+from prunus.measure.trust import Trust
+from prunus.model import Floats, Skeleton
+
+
+def trust_record(skeleton: Skeleton, trust: Trust | None) -> TrustRecord | None:
+    """The trust in a skeleton, house frame, as `skeleton.json` has it."""
+    if trust is None:
+        return None
+    found = branches(skeleton)
+    names = branch_names(skeleton, found)
+    rows = [
+        {"name": name, "label": one.label.word, "nodes": one.rows.tolist(), "trust": likely}
+        for name, one, likely in zip(names, found, _rounded(trust.branch), strict=True)
+    ]
+    edges = [None, *_rounded(trust.edge[1:])]
+    return TrustRecord.model_validate(
+        {"tree": round(trust.tree, DIGITS), "edges": edges, "branches": rows}
+    )
+
+
+DIGITS = 4
+"""A probability is written with so many."""
+
+
+def _rounded(values: Floats) -> list[float]:
+    return [round(value, DIGITS) for value in values.tolist()]

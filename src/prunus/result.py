@@ -1,0 +1,84 @@
+"""What the chain gives: the skeleton, the evidence, and what is asked of both afterwards."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from prunus.measure.refine import Refined, refined
+from prunus.measure.trust import Known, Trust, trust_in
+from prunus.measure.trust.review import review_of
+from prunus.model import Floats, PointCloud, SeededGraph, Skeleton
+from prunus.params import Parameters
+from prunus.search import goes_by_learned_score, shipped_score
+from prunus.search.judged import judged
+from prunus.sensing.isolate import Isolated
+
+REFINED_WITH = 150_000
+"""So many points of the tree, drawn at random, are enough to refine its skeleton."""
+
+Seconds = dict[str, tuple[float, float]]
+"""CPU and wall seconds of each stage."""
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """The skeleton and the evidence: graph, score, history (I,) of best scores, timings, warnings.
+
+    `in_house` is the skeleton in the house frame (Z up); `skeleton` in the frame of the input.
+    `scan` is all that was given; `isolated` what each point of it is, where it was a raw scan.
+    """
+
+    in_house: Skeleton
+    graph: SeededGraph
+    score: float
+    history: Floats
+    seconds: Seconds
+    params: Parameters
+    seed: int
+    warnings: list[str]
+    notes: list[str]
+    scan: PointCloud
+    isolated: Isolated | None
+
+    @cached_property
+    def skeleton(self) -> Skeleton:
+        """The skeleton in the frame of the input."""
+        return self.in_house.moved(self.graph.superpoints.cloud.to_input)
+
+    @cached_property
+    def tree_cloud(self) -> PointCloud:
+        """All points of the tree: what was given, or what was isolated of it."""
+        if self.isolated is None:
+            return self.scan
+        return self.scan.take(self.isolated.target)
+
+    @cached_property
+    def refined(self) -> Refined:
+        """The skeleton refitted to these points, in the house frame; made when first asked for."""
+        points = self.tree_cloud.sample(REFINED_WITH, np.random.default_rng(self.seed))
+        return refined(self.in_house, points)
+
+    @cached_property
+    def trust(self) -> Trust | None:
+        """How far to trust it; None where it was not found by the learned score."""
+        if len(self.in_house) == 1 or not goes_by_learned_score(self.graph, self.params):
+            return None
+        told = judged(self.in_house, self.graph, shipped_score())
+        raw = self.isolated is not None
+        return trust_in(Known(self.in_house, self.refined, told.gain, told.likely, raw))
+
+    @cached_property
+    def review(self) -> list[str]:
+        """Why a person should look at the tree before a machine acts on it; empty: no need."""
+        doubts = [] if self.trust is None else review_of(self.in_house, self.trust)
+        return [*self._other_tree(), *self.warnings, *doubts]
+
+    def _other_tree(self) -> list[str]:
+        rival = None if self.isolated is None else self.isolated.rival
+        if rival is None:
+            return []
+        place = ", ".join(f"{value:.2f}" for value in self.scan.to_input.apply(rival))
+        return [f"the tree that stands at ({place}) could be meant as well"]
