@@ -120,7 +120,7 @@ def lines_of(some: list[Tried]) -> Iterator[str]:
            f"{np.corrcoef(tree, share)[0, 1]:.2f}")  # fmt: skip
     looks = np.array([bool(one.result.review) for one, _ in known])
     for name, part in (("for a person", looks), ("not", ~looks)):
-        worst = np.quantile(ratio[part], (0.5, 0.9, 1)) if part.any() else np.full(3, np.nan)
+        worst = np.nanquantile(ratio[part], (0.5, 0.9, 1)) if part.any() else np.full(3, np.nan)
         yield (f"  {name}: {part.sum()} trees, edit ratio median {worst[0]:.2f}, "
                f"90 % {worst[1]:.2f}, worst {worst[2]:.2f}")  # fmt: skip
     yield f"  CPU: {np.mean([one.seconds for one in some]):.3f} s a tree"
