@@ -20,6 +20,9 @@ from prunus.measure.trust.model import SHIPPED
 from prunus.model import Label
 
 RIDGE = 10.0
+SIGNS = {"least": 1, "kind": 1, "rival": 1, "straight": 1, "touch": 1, "seen": 1, "bend": -1,
+         "raw": -1, "edge": 1, "branch": 1}  # fmt: skip
+"""What speaks for a branch or an edge, and what against."""
 APART = 1000
 """The cases have seeds so far apart."""
 
@@ -33,13 +36,15 @@ def fitted(some: list[Tried]) -> Model:
     branch = {}
     for kind in Label:
         own = np.flatnonzero(label == kind)
-        branch[kind] = fit_odds([flat[row] for row in own], right[own], RIDGE)
+        branch[kind] = fit_odds([flat[row] for row in own], right[own], RIDGE, SIGNS)
     edges: list[Evidence] = []
     for one, evidence in zip(some, told, strict=True):
         pairs = zip(one.label.tolist(), evidence, strict=True)
         trust = np.array([branch[Label(kind)](known) for kind, known in pairs])
         edges += of_edges(one.known, trust)
-    return Model(branch, fit_odds(edges, np.concatenate([one.unchanged for one in some]), RIDGE))
+    return Model(
+        branch, fit_odds(edges, np.concatenate([one.unchanged for one in some]), RIDGE, SIGNS)
+    )
 
 
 def main() -> None:

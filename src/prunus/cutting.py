@@ -64,7 +64,8 @@ def _on_skeleton(source: Source, rules: CutRules) -> PlanFile:
     path, notes = source.path, list[str]()
     skeleton, record = read_skeleton(path), None
     if path.suffix.lower() == ".json":
-        record = read_record(path)[1].input
+        told = read_record(path)[1]
+        record, notes = told.input, list(told.review or ())
     scan = None
     try:
         scan = _scan_of(source, record)

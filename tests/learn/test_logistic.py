@@ -18,6 +18,15 @@ def test_the_odds_come_back() -> None:
     assert odds({"a": 3.0, "b": 3.0}) == pytest.approx(1 / (1 + math.exp(-0.5)), abs=0.03)
 
 
+def test_evidence_that_speaks_the_wrong_way_is_left_out() -> None:
+    told = [{"a": float(a % 7), "b": float(-a)} for a in range(40)]
+    right = np.array([a >= 20 for a in range(40)])
+    assert fit_odds(told, right, ridge=1.0).weight["b"] < 0
+    held = fit_odds(told, right, ridge=1.0, signs={"b": 1})
+    assert list(held.weight) == ["a"]
+    assert held({"a": 3.0, "b": 5.0}) == held({"a": 3.0, "b": -5.0})
+
+
 def test_a_ridge_keeps_weights_small_where_nothing_was_wrong() -> None:
     told = [{"a": float(a)} for a in range(20)]
     right = np.array([a >= 10 for a in range(20)])

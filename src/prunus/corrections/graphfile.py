@@ -188,7 +188,7 @@ def _skeleton(arrays: Arrays, count: int) -> Skeleton:
     columns: dict[str, Any] = {name: there(arrays, f"skeleton_{name}") for name in COLUMNS}
     columns["label"] = indices(arrays, "skeleton_label", len(Label))
     nodes = columns["superpoint"] = indices(arrays, "skeleton_superpoint", count)
-    if len(np.unique(nodes)) != len(nodes):
+    if nodes.ndim != 1 or len(np.unique(nodes)) != len(nodes):
         raise ValueError("skeleton_superpoint: expected each once")
     return Skeleton(**columns)
 

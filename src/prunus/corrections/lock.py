@@ -117,7 +117,7 @@ def _holder(held: bytes) -> Holder | None:
             str(values["since"]),
             values.get("born"),
         )
-    except (ValueError, TypeError, KeyError, AttributeError):
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError):
         return None
 
 

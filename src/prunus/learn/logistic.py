@@ -30,9 +30,29 @@ def fit_logistic(features: Floats, valid: Bools, ridge: float = RIDGE) -> Floats
     return weights
 
 
-def fit_odds(evidence: Sequence[Mapping[str, float]], right: Bools, ridge: float = RIDGE) -> Odds:
-    """The odds that fit some evidence (C) and what was right (C,); NaN counts as usual."""
+def fit_odds(
+    evidence: Sequence[Mapping[str, float]],
+    right: Bools,
+    ridge: float = RIDGE,
+    signs: Mapping[str, int] | None = None,
+) -> Odds:
+    """The odds that fit some evidence (C) and what was right (C,); NaN counts as usual.
+
+    `signs`: what may speak only for (1) or only against (-1); evidence that a free fit reads the
+    other way is left out, so that chance among few examples is not taken for a law.
+    """
     names = list(evidence[0])
+    while True:
+        odds = _free_odds(names, evidence, right, ridge)
+        against = [n for n in names if odds.weight[n] * (signs or {}).get(n, 0) < 0]
+        if not against:
+            return odds
+        names = [name for name in names if name not in against]
+
+
+def _free_odds(
+    names: list[str], evidence: Sequence[Mapping[str, float]], right: Bools, ridge: float
+) -> Odds:
     values = np.array([[one[name] for name in names] for one in evidence])
     usual, scale = np.nanmean(values, axis=0), np.nanstd(values, axis=0) + TINY
     weights = fit_logistic(np.nan_to_num((values - usual) / scale), right, ridge)

@@ -52,6 +52,8 @@ def labels_of(result: Result) -> str:
         mean = None if trust is None or not any(own) else float(trust.branch[own].mean())
         rows.append([name, str(sum(own)), str(edges), f"{lengths[label]:.2f}", _share(mean)])
     heads = ["", "branches", "edges", "length [m]", "trust"]
+    if trust is None:
+        return "<h2>Labels</h2>" + html_table(heads[:-1], [row[:-1] for row in rows])
     return "<h2>Labels</h2>" + html_table(heads, rows) + TRUST_NOTE
 
 
@@ -70,6 +72,8 @@ def leaders_of(result: Result) -> str:
         for number, leader in enumerate(leaders(result.in_house), 1)
     ]
     names = ["leader", "height [m]", "lean [deg]", "spacing [m]", "side branches", "trust"]
+    if not trust:
+        names, rows = names[:-1], [row[:-1] for row in rows]
     return "<h2>Leaders, from left to right</h2>" + html_table(names, rows)
 
 

@@ -33,10 +33,12 @@ class Planned:
 def planned(state: State) -> Planned:
     """The plan by the shipped rules, house frame; takes some tenths of a second.
 
-    The tree is refined to the points that are marked as its own. Branches have the names that
-    they have on the page: refining keeps their order.
+    The tree is refined to the points that are marked as its own; PrunusError where there are none.
+    Branches have the names that they have on the page: refining keeps their order.
     """
     own = state.scan.take(state.kind == Kind.TARGET)
+    if len(own) == 0:
+        raise PrunusError("no point is marked as the tree's: there is nothing to plan by")
     points = own.sample(REFINED_WITH, np.random.default_rng(state.result.seed))
     coarse = _vouched(state)
     tree = refined(coarse, points)

@@ -46,6 +46,14 @@ def test_the_model_survives_its_file(tmp_path: Path) -> None:
     assert Model.from_toml(path) == shipped_model()
 
 
+def test_nothing_that_speaks_for_a_branch_lowers_its_trust() -> None:
+    for odds in (*shipped_model().branch.values(), shipped_model().edge):
+        for name in ("least", "kind", "rival", "straight", "touch", "seen", "edge", "branch"):
+            assert odds.weight.get(name, 0.0) >= 0, name
+        for name in ("bend", "raw"):
+            assert odds.weight.get(name, 0.0) <= 0, name
+
+
 def test_every_branch_and_edge_has_a_probability(found: Result) -> None:
     trust = found.trust
     assert trust is not None

@@ -82,7 +82,7 @@ def evidence_of(limbs: Limbs, tree: Refined, demand: Demand, points: Nearby | No
 def _parent_radius(limbs: Limbs, limb: Limb) -> float:
     radius = float(limbs.skeleton.radius[limb.rows[0]])
     parent = limbs.parent_of(limb)
-    return radius if math.isfinite(radius) or parent is None else LIKELY_RADIUS[parent.label]
+    return radius if radius > 0 or parent is None else LIKELY_RADIUS[parent.label]
 
 
 def _rise(parent: Limb, foot: Floats) -> float:

@@ -159,7 +159,9 @@ def _farthest(skeleton: Skeleton, lengths: Floats) -> Floats:
 
 def _out_of_bark(xyz: Floats, along: Floats, above: Limb, radius: float) -> float:
     """Where along a branch its axis is first a parent's radius away from the parent's axis."""
-    if not np.isfinite(radius):
+    if along[-1] <= 0:
+        return 0.0
+    if not radius > 0:
         radius = LIKELY_RADIUS[above.label]
     steps = np.arange(0.0, min(along[-1], NEAR), STEP)
     points = np.column_stack([np.interp(steps, along, xyz[:, axis]) for axis in range(3)])

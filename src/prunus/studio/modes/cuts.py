@@ -39,6 +39,8 @@ class Cuts(Mode):
         self.state: State | None = None
         self.planned: Planned | None = None
         self.at: int | None = None
+        self.tree: object = None
+        self.problem = ""
         self.text = gui.add_html("")
         steps = gui.add_button_group("Look at", ("back", "next"), hint="B, N")
         steps.on_click(lambda event: self.desk.try_to(lambda: self._step(event.target.value)))
@@ -62,6 +64,9 @@ class Cuts(Mode):
 
     def enter(self) -> None:
         """The refined skeleton is shown in place of the other."""
+        if self.tree is not self.desk.tree:
+            self.state = self.planned = self.at = None
+        self.tree = self.desk.tree
         self.before = self.desk.show.wishes
         rest = self.before.layers - {label.word for label in Label}
         self.desk.show.want(replace(self.before, layers=rest))
@@ -80,6 +85,7 @@ class Cuts(Mode):
             return
         if self.state is None or not _alike(self.state, state):
             self.planned = self.at = None
+            self.problem = ""
             threading.Thread(target=self._plan, args=(state,), daemon=True).start()
         self.state = state
         self._show()
@@ -99,10 +105,14 @@ class Cuts(Mode):
 
     def _plan(self, state: State) -> None:
         """Plan, and show it if nothing has changed meanwhile."""
-        found = planned(state)
+        found, problem = None, ""
+        try:
+            found = planned(state)
+        except PrunusError as error:
+            problem = str(error)
         with self.desk.lock:
             if self.state is not None and _alike(self.state, state) and not self.desk.closed:
-                self.planned = found
+                self.planned, self.problem = found, problem
                 self._show()
 
     def _show(self) -> None:
@@ -140,7 +150,7 @@ class Cuts(Mode):
     def _tell(self) -> None:
         """The cuts in words."""
         if self.planned is None:
-            self.text.content = block(quiet("planning ..."))
+            self.text.content = block(quiet(self.problem or "planning ..."))
             self.card.content = self.file.content = ""
             return
         chosen = None if self.at is None else self._cuts[self.at]
