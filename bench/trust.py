@@ -20,6 +20,7 @@ from prunus.evaluate.correction import corrected
 from prunus.evaluate.edits import edits, unchanged
 from prunus.evaluate.right import right_branches
 from prunus.experiment.orchard import Tree, tree_of
+from prunus.learn.tables import calibration_error
 from prunus.measure import branches
 from prunus.measure.trust import Known
 from prunus.model import Bools, Floats, Ints
@@ -33,7 +34,6 @@ from prunus.simulate.settings import Setting
 
 CASES: tuple[tuple[Setting, bool], ...] = (("field", True), ("field", False), ("clean", True))
 """Settings, and whether the scan is given raw, with no base."""
-BINS = 10
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,13 +91,6 @@ def _raw(seed: int, setting: Setting) -> Result:
 def _alone(tree: Tree) -> Result:
     params = Parameters().changed("isolation", isolate="never")
     return skeletonize(tree.cloud, tree.truth.xyz[0], params)
-
-
-def calibration_error(guess: Floats, right: Bools) -> float:
-    """The expected calibration error of probabilities (C,), in `BINS` bins of equal width."""
-    bins = np.minimum((guess * BINS).astype(int), BINS - 1)
-    off = [abs((guess - right)[bins == one].sum()) for one in range(BINS)]
-    return float(sum(off) / max(len(guess), 1))
 
 
 def lines_of(some: list[Tried]) -> Iterator[str]:

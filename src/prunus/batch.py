@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -29,7 +28,7 @@ from prunus.model import Label
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.report import report_page
-from prunus.result import Result
+from prunus.result import Result, Seconds, timed
 from prunus.stages.confidence import EdgeScorer, HandmadeScorer
 from prunus.stages.networks import NetworkScorer
 
@@ -126,24 +125,20 @@ def attempt(task: Task, options: Options) -> Record:
 
 def do(task: Task, options: Options) -> Record:
     """Read the file, skeletonize it, write all outputs, and return what `--json` prints."""
-    cpu, wall = time.process_time(), time.perf_counter()
-    scan = open_scan(task.path, options.frame, options.unit)
-    reading = (time.process_time() - cpu, time.perf_counter() - wall)
+    seconds: Seconds = {}
+    with timed(seconds, "read"):
+        scan = open_scan(task.path, options.frame, options.unit)
     scorer = scorer_of(options)
     result = skeletonize(scan.cloud, options.base, options.params, options.seed, scorer)
-    cpu, wall = time.process_time(), time.perf_counter()
-    _ = result.refined
-    refining = (time.process_time() - cpu, time.perf_counter() - wall)
-    cpu, wall = time.process_time(), time.perf_counter()
-    _ = result.review
-    trusting = (time.process_time() - cpu, time.perf_counter() - wall)
+    seconds |= result.seconds
+    with timed(seconds, "refine"):
+        _ = result.refined
+    with timed(seconds, "trust"):
+        _ = result.review
     mark_compiled()
-    cpu, wall = time.process_time(), time.perf_counter()
-    write_outputs(task.folder, result, scan, options.report)
-    notes = write_traits(task.folder, result, scan.file.name) if options.traits else []
-    writing = (time.process_time() - cpu, time.perf_counter() - wall)
-    seconds = {"read": reading, **result.seconds, "refine": refining, "trust": trusting}
-    seconds["write"] = writing
+    with timed(seconds, "write"):
+        write_outputs(task.folder, result, scan, options.report)
+        notes = write_traits(task.folder, result, scan.file.name) if options.traits else []
     return _record(task, result, scan, seconds, notes)
 
 
@@ -213,7 +208,7 @@ def _record(
     task: Task,
     result: Result,
     scan: Scan,
-    seconds: dict[str, tuple[float, float]],
+    seconds: Seconds,
     notes: list[str],
 ) -> Record:
     skeleton, graph = result.skeleton, result.graph

@@ -61,11 +61,12 @@ def cut_file(source: Source, rules: CutRules) -> PlanFile:
 
 
 def _on_skeleton(source: Source, rules: CutRules) -> PlanFile:
-    path, notes = source.path, list[str]()
-    skeleton, record = read_skeleton(path), None
+    path, notes, record = source.path, list[str](), None
     if path.suffix.lower() == ".json":
-        told = read_record(path)[1]
+        skeleton, told = read_record(path)
         record, notes = told.input, list(told.review or ())
+    else:
+        skeleton = read_skeleton(path)
     scan = None
     try:
         scan = _scan_of(source, record)

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +11,7 @@ from prunus.errors import PrunusError
 from prunus.measure import remarks
 from prunus.model import Floats, PointCloud, ScoredGraph, SeededGraph, Skeleton
 from prunus.params import Parameters
-from prunus.result import Result, Seconds
+from prunus.result import Result, Seconds, timed
 from prunus.search import (
     SearchResult,
     goes_by_learned_score,
@@ -57,13 +54,13 @@ def skeletonize(
     scorer = scorer or NetworkScorer.shipped(params.confidence.edge_net)
     scan, notes = cloud, list[str]()
     scored = _scored(cloud, scorer, params, rng, seconds)
-    with _timed(seconds, "isolate"):
+    with timed(seconds, "isolate"):
         isolated = _isolated(cloud, scored, scorer, at, params, rng)
     if isolated is not None:
         cloud = cloud.take(isolated.target)
         scored = _scored(cloud, scorer, params, rng, seconds)
         notes.append(isolated.told())
-    with _timed(seconds, "seeds"):
+    with timed(seconds, "seeds"):
         foot = None if at is not None else isolated.foot if isolated else find_foot(cloud, scored)
         hoped = hopeful(scored, scorer, params.confidence)
         seeded, warnings = find_seeds(hoped, params, foot if at is None else at)
@@ -74,7 +71,7 @@ def skeletonize(
     if params.search.score == "learned" and not learned:
         notes.append(f"{scorer.name} tells no categories: the paper's score was taken")
     found = best_skeleton(seeded, params, rng, seconds)
-    with _timed(seconds, "measures"):
+    with timed(seconds, "measures"):
         warnings += remarks(found.skeleton, seeded, for_tips=not learned)
     skeleton = found.skeleton if foot is None else _standing_at(foot, found.skeleton)
     return Result(
@@ -91,14 +88,14 @@ def _scored(
     seconds: Seconds,
 ) -> ScoredGraph:
     """All candidate edges of points drawn from a cloud, with their confidence."""
-    with _timed(seconds, "sample"):
+    with timed(seconds, "sample"):
         points = params.input.points
         drawn = cloud.sample(None if points == "all" else points, rng)
-    with _timed(seconds, "superpoints"):
+    with timed(seconds, "superpoints"):
         superpoints = find_superpoints(drawn, params.superpoints, rng)
-    with _timed(seconds, "candidates"):
+    with timed(seconds, "candidates"):
         candidates = find_candidates(superpoints)
-    with _timed(seconds, "confidence"):
+    with timed(seconds, "confidence"):
         return score_edges(candidates, scorer)
 
 
@@ -147,7 +144,7 @@ def best_skeleton(
 ) -> SearchResult:
     """The best skeleton of a graph under the score that the parameters ask for."""
     if goes_by_learned_score(seeded, params):
-        with _timed(seconds, "search"):
+        with timed(seconds, "search"):
             return search_learned(seeded, shipped_score())
     return _as_in_the_paper(seeded, params, rng, seconds)
 
@@ -156,22 +153,13 @@ def _as_in_the_paper(
     seeded: SeededGraph, params: Parameters, rng: np.random.Generator, seconds: Seconds
 ) -> SearchResult:
     """Trunk, supports and leaders first, side branches afterwards."""
-    with _timed(seconds, "search"):
+    with timed(seconds, "search"):
         found = search(seeded, params, rng, end_at_tips=True)
-    with _timed(seconds, "stubs"):
+    with timed(seconds, "stubs"):
         framework = drop_stubs(found.skeleton, params.leaders.min_length)
-    with _timed(seconds, "side branches"):
+    with timed(seconds, "side branches"):
         skeleton = find_side_branches(framework, seeded, params)
     return SearchResult(skeleton, skel_score(skeleton, params), found.history)
-
-
-@contextmanager
-def _timed(seconds: Seconds, stage: str) -> Iterator[None]:
-    cpu, wall = time.process_time(), time.perf_counter()
-    yield
-    before = seconds.get(stage, (0.0, 0.0))
-    spent = time.process_time() - cpu, time.perf_counter() - wall
-    seconds[stage] = (before[0] + spent[0], before[1] + spent[1])
 
 
 def _point(base: ArrayLike) -> Floats:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -21,6 +24,16 @@ REFINED_WITH = 150_000
 
 Seconds = dict[str, tuple[float, float]]
 """CPU and wall seconds of each stage."""
+
+
+@contextmanager
+def timed(seconds: Seconds, stage: str) -> Iterator[None]:
+    """Add the time that is spent inside to that of a stage."""
+    cpu, wall = time.process_time(), time.perf_counter()
+    yield
+    before = seconds.get(stage, (0.0, 0.0))
+    spent = time.process_time() - cpu, time.perf_counter() - wall
+    seconds[stage] = (before[0] + spent[0], before[1] + spent[1])
 
 
 @dataclass(frozen=True, eq=False)

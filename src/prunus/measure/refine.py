@@ -18,6 +18,8 @@ from prunus.measure.radii import Unknown
 from prunus.measure.ribbons import supported
 from prunus.model import Bools, Floats, Ints, PointCloud, Skeleton
 
+TINY = 1e-9
+
 
 @dataclass(frozen=True, eq=False)
 class Refined:
@@ -38,8 +40,11 @@ class Refined:
     @property
     def names(self) -> list[str]:
         """The names of the branches: refining moves them, and would number them otherwise."""
-        found = branches(self.skeleton)
-        return list(self.named) or branch_names(self.skeleton, found)
+        return list(self.named) or branch_names(self.skeleton, branches(self.skeleton))
+
+    def seen_share(self, rows: Ints) -> float:
+        """The share of the length of the edges into some rows that the scan has points of."""
+        return float(np.average(self.seen[rows], weights=self.skeleton.lengths[rows] + TINY))
 
     @property
     def reason(self) -> list[str]:

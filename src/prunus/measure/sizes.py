@@ -121,11 +121,10 @@ class Limb:
     def evidence(self) -> Record:
         """What of it the scan shows, and why a diameter is unknown."""
         rows = self.branch.rows[1:]
-        steps = self.tree.skeleton.lengths[rows]
         why = [Unknown(value).words for value in np.unique(self.tree.unknown[rows])]
         error = self.at(self.inner, self.tree.radius_error)
         return {
-            "seen_share": float((steps * self.tree.seen[rows]).sum() / max(steps.sum(), 1e-9)),
+            "seen_share": self.tree.seen_share(rows),
             "diameter_told_share": _told(self.branch.label, error),
             "diameter_missing": "; ".join(word for word in why if word),
         }

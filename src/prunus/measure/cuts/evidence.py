@@ -65,7 +65,7 @@ def evidence_of(limbs: Limbs, tree: Refined, demand: Demand, points: Nearby | No
     return Evidence(
         least=_least(skeleton.confidence[rows]),
         path=_least(skeleton.confidence[limbs.path_to(limb)]),
-        seen=float(np.average(tree.seen[rows], weights=skeleton.lengths[rows] + TINY)),
+        seen=tree.seen_share(rows),
         length=limb.reach,
         diameter=diameter,
         doubt=2 * limb.value_at(demand.along, tree.radius_error),

@@ -48,7 +48,7 @@ def of_branches(known: Known) -> list[Evidence]:
     tip over that; `bend`, logarithm of the degrees at its foot; `touch`, metres from its tip to
     the nearest other branch. `seen`, the share with points; `raw`, 1 in a tree of a raw scan.
     """
-    limbs = Limbs.of(known.fine.skeleton).all
+    limbs = Limbs.of(known.fine.skeleton, known.fine.names).all
     found = branches(known.skeleton)
     return [_of_branch(known, *pair) for pair in zip(found, limbs, strict=True)]
 
@@ -57,7 +57,6 @@ def _of_branch(known: Known, branch: Branch, limb: Limb) -> Evidence:
     skeleton, rows, label = known.skeleton, branch.rows[1:], int(branch.label)
     weight = skeleton.lengths[rows] + TINY
     brings = known.gain[rows].sum(axis=0)
-    fine = limb.rows[1:]
     beeline = float(np.linalg.norm(skeleton.xyz[rows[-1]] - skeleton.xyz[branch.rows[0]]))
     return {
         "least": float(_log(skeleton.confidence[rows].min())),
@@ -67,9 +66,7 @@ def _of_branch(known: Known, branch: Branch, limb: Limb) -> Evidence:
         "straight": beeline / max(branch.length, TINY),
         "bend": math.log(max(limb.bend, 2.0)),
         "touch": _touch(skeleton, branch.rows),
-        "seen": float(
-            np.average(known.fine.seen[fine], weights=known.fine.skeleton.lengths[fine] + TINY)
-        ),
+        "seen": known.fine.seen_share(limb.rows[1:]),
         "raw": float(known.raw),
     }
 
@@ -82,14 +79,15 @@ def of_edges(known: Known, branch_trust: Floats) -> list[Evidence]:
     1 for the first and the last edge of a branch.
     """
     skeleton = known.skeleton
-    odds = np.log(branch_trust.clip(TINY, 1 - TINY) / (1 - branch_trust.clip(TINY, 1 - TINY)))
+    sure = branch_trust.clip(TINY, 1 - TINY)
+    odds = np.log(sure / (1 - sure)).clip(-MOST, MOST)
     found: dict[int, Evidence] = {}
     for number, branch in enumerate(branches(skeleton)):
         for row in branch.rows[1:].tolist():
             found[row] = {
                 "edge": float(_log(skeleton.confidence[row])),
                 "kind": float(_log(known.likely[row, int(branch.label)])),
-                "branch": float(odds[number].clip(-MOST, MOST)),
+                "branch": float(odds[number]),
                 "whole": math.log(max(branch.length, LEAST)),
                 "length": float(skeleton.lengths[row]),
                 "foot": float(row == branch.rows[1]),
