@@ -14,11 +14,12 @@ from typer.testing import CliRunner, Result
 from prunus.cli import app
 from prunus.io.clouds import read_cloud, write_cloud
 from prunus.io.ply import read_ply
-from prunus.io.skeletons import read_record, read_skeleton
+from prunus.io.skeletons import read_record, read_skeleton, write_skeleton
 from prunus.params import Parameters
 from prunus.rules import offenders
 from prunus.simulate.orchard import simulate_tree
 from tests.conftest import simulated
+from tests.drawn import tree
 from tests.recordings import Recording
 from tests.recordings import table_of as points_table
 
@@ -180,10 +181,10 @@ def test_inputs_of_one_name_in_two_folders_go_by_their_folders(
 
 
 def test_the_folders_of_the_data_set_are_inputs(scan: Path, quick: Path, tmp_path: Path) -> None:
-    for tree in ("bag_0", "bag_1"):
-        (tmp_path / "set" / tree).mkdir(parents=True)
-        (tmp_path / "set" / tree / "cloud_final.ply").write_bytes(scan.read_bytes())
-        (tmp_path / "set" / tree / "top_cloud.ply").write_bytes(b"no cloud")
+    for name in ("bag_0", "bag_1"):
+        (tmp_path / "set" / name).mkdir(parents=True)
+        (tmp_path / "set" / name / "cloud_final.ply").write_bytes(scan.read_bytes())
+        (tmp_path / "set" / name / "top_cloud.ply").write_bytes(b"no cloud")
     out = tmp_path / "out"
     rest = ["--params", quick, *FAST]
     assert prunus("skeletonize", tmp_path / "set", "-o", out, *rest).exit_code == 0
@@ -340,6 +341,22 @@ def test_a_cloud_goes_into_a_bag_and_into_nothing_else(scan: Path, tmp_path: Pat
     done = prunus("convert", tmp_path / "s.json", tmp_path / "t.glb", "--cloud", scan)
     assert done.exit_code == 2
     assert "t.glb: holds no cloud; expected a bag (.mcap)" in done.stderr
+
+
+def test_a_skeleton_converted_to_its_own_kind_says_all_that_it_said(tmp_path: Path) -> None:
+    said = {
+        "score": 1.5,
+        "trust": {"tree": 0.9, "edges": [None, *[0.9] * (len(tree()) - 1)], "branches": []},
+        "review": ["a reason"],
+        "input": {"file": "a.ply", "sha256": "0", "points": 9},
+        "params": {},
+        "seed": 3,
+        "version_of_prunus": "0",
+    }
+    write_skeleton(tmp_path / "s.json", tree(), **said)
+    assert prunus("convert", tmp_path / "s.json", tmp_path / "t.json").exit_code == 0
+    assert (tmp_path / "t.json").read_bytes() == (tmp_path / "s.json").read_bytes()
+    assert json.loads((tmp_path / "t.json").read_text()).items() >= said.items()
 
 
 def test_clouds_convert_and_unknown_kinds_do_not(scan: Path, tmp_path: Path) -> None:

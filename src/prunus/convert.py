@@ -17,7 +17,7 @@ from prunus.io.mtg import write_mtg
 from prunus.io.obj import write_obj
 from prunus.io.plans import read_plan
 from prunus.io.ros import facing, write_mcap
-from prunus.io.skeletons import read_record, read_skeleton, write_skeleton
+from prunus.io.skeletons import EVIDENCE, read_record, read_skeleton, write_skeleton
 from prunus.io.treetext import write_treetext
 from prunus.model import Floats, Skeleton
 
@@ -79,8 +79,7 @@ def convert_file(
             raise PrunusError(f"{target}: holds no {name}; expected a bag (.mcap)")
     if kind == ".json" == source.suffix.lower():
         skeleton, record = read_record(source)
-        evidence = {"score", "input", "params", "seed", "version_of_prunus"}
-        write_skeleton(target, skeleton, **record.model_dump(include=evidence))
+        write_skeleton(target, skeleton, **record.model_dump(include=EVIDENCE))
         return []
     skeleton = read_skeleton(source)
     notes, needs = notes_on(skeleton, FORMATS[kind]), FORMATS[kind].needs

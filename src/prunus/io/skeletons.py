@@ -81,8 +81,12 @@ class SkeletonFile(BaseModel):
     version_of_prunus: str | None = None
 
 
+EVIDENCE = {name for name, field in SkeletonFile.model_fields.items() if field.default is None}
+"""What a file may say beside the skeleton."""
+
+
 def write_skeleton(path: str | Path, skeleton: Skeleton, **evidence: Any) -> None:
-    """Write `skeleton.json`; `evidence`: score, trust, review, input, params, seed, ..."""
+    """Write `skeleton.json`; `evidence`: see `EVIDENCE`."""
     record = SkeletonFile(
         nodes=skeleton.xyz.tolist(),
         parent=skeleton.parent.tolist(),
