@@ -4,7 +4,6 @@ import json
 import os
 import socket
 import subprocess
-import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -12,15 +11,14 @@ from pathlib import Path
 import pytest
 
 from prunus.corrections.lock import GUARD, NAME, Holder, acquire, release
+from tests.children import child
 
 
 @pytest.fixture
-def other() -> Iterator[subprocess.Popen[bytes]]:
+def other() -> Iterator[subprocess.Popen[str]]:
     """Another process, alive."""
-    process = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
-    yield process
-    process.kill()
-    process.communicate()
+    with child("-c", "input()") as process:
+        yield process
 
 
 def write(folder: Path, **changed: object) -> bytes:
@@ -46,7 +44,7 @@ def test_the_second_is_told_who_was_first(tmp_path: Path) -> None:
     assert acquire(tmp_path / "tree") is None
 
 
-def test_a_live_process_keeps_its_lock(tmp_path: Path, other: subprocess.Popen[bytes]) -> None:
+def test_a_live_process_keeps_its_lock(tmp_path: Path, other: subprocess.Popen[str]) -> None:
     held = write(tmp_path, pid=other.pid)
     holder = acquire(tmp_path)
     assert holder is not None
@@ -56,8 +54,8 @@ def test_a_live_process_keeps_its_lock(tmp_path: Path, other: subprocess.Popen[b
 
 
 def test_the_lock_of_an_ended_process_is_taken_over(tmp_path: Path) -> None:
-    ended = subprocess.Popen([sys.executable, "-c", ""])
-    ended.wait()
+    with child("-c", "") as ended:
+        ended.wait()
     write(tmp_path, pid=ended.pid)
     assert acquire(tmp_path) is None
     assert json.loads((tmp_path / NAME).read_text())["pid"] == os.getpid()

@@ -4,8 +4,6 @@ import json
 import os
 import shutil
 import signal
-import subprocess
-import sys
 import textwrap
 from pathlib import Path
 
@@ -37,6 +35,7 @@ from prunus.errors import PrunusError
 from prunus.io.clouds import read_cloud, write_cloud
 from prunus.io.skeletons import read_skeleton, write_skeleton
 from prunus.model import Kind, Label, Skeleton
+from tests.children import child
 from tests.corrections.conftest import QUICK
 from tests.corrections.trees import outside, random_act
 
@@ -272,9 +271,8 @@ def test_a_killed_server_loses_at_most_the_last_act(
     scan_file: Path, folder: Path, after: int
 ) -> None:
     code = textwrap.dedent(WORKER)
-    words = [sys.executable, "-c", code, str(scan_file), str(folder)]
     told = 0
-    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as worker:
+    with child("-c", code, str(scan_file), str(folder)) as worker:
         assert worker.stdout is not None
         while told < after:
             told = int(worker.stdout.readline())
