@@ -1,44 +1,66 @@
-# Two words for a stranger: `make demo` and `make test`. Both make .venv when it is missing.
+# Two words for a stranger: `make demo` and `make test`. Each makes in .venv what it lacks there.
 PYTHON ?= python3
 BIN := .venv/bin
-READY := .venv/.ready
-LEARN := .venv/.learn
+PIP := $(BIN)/python -m pip --disable-pip-version-check
+RUNS := .venv/.runs
+TOOLS := .venv/.tools
+LEARNS := .venv/.learns
 
-.PHONY: demo test check format lint types arrows bench clean
+.PHONY: demo test every-test check format lint types arrows wheel release bench clean
 
-demo: $(READY)            ## a simulated scan through the whole chain, then the report
+demo: $(RUNS)             ## a simulated scan through the whole chain, then the report
 	$(BIN)/prunus demo -o prunus-out/demo
 
-test: $(READY) $(LEARN)   ## the tests, import arrows and laws among them
+test: $(LEARNS)           ## the tests but the slow ones, import arrows and laws among them
+	$(BIN)/python -m pytest -m "not slow"
+	@echo "the tests that are marked slow were left out: make check runs them"
+
+check: format lint types every-test wheel   ## all that CI asks for
+
+every-test: $(LEARNS)     ## the tests, the slow ones too
 	$(BIN)/python -m pytest
 
-check: format lint types test   ## all that CI asks for
-
-format: $(READY)
+format: $(TOOLS)
 	$(BIN)/ruff format --check .
 
-lint: $(READY)
+lint: $(TOOLS)
 	$(BIN)/ruff check .
 
-types: $(READY) $(LEARN)
+types: $(LEARNS)
 	$(BIN)/mypy
 
-arrows: $(READY)          ## the floor plan alone (also part of `make test`)
+arrows: $(TOOLS)          ## the floor plan alone (also part of `make test`)
 	$(BIN)/python -m pytest tests/test_import_arrows.py
 
-bench: $(READY)           ## measure; figures go to the screen
+wheel: $(TOOLS)           ## build it into dist/, install it alone on every Python here, use it
+	$(BIN)/python .ci/wheel.py
+
+release: check            ## all checks; what they tried lies in dist/; uploads nothing
+	@ls dist
+	@git diff --quiet HEAD || echo "not yet: there are changes that are not committed"
+	@! grep -q "(unreleased)" CHANGELOG.md || echo "not yet: CHANGELOG.md says (unreleased)"
+	@echo "nothing was uploaded; docs/releasing.md says how to"
+
+bench: $(TOOLS)           ## measure; figures go to the screen
 	$(BIN)/python -m bench
 
-$(READY): pyproject.toml
-	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet -e ".[dev]"
-	touch $(READY)
+$(RUNS): pyproject.toml
+	@echo "making .venv"
+	@$(PYTHON) -m venv .venv
+	@echo "installing what prunus needs to run"
+	@$(PIP) install -e .
+	@touch $(RUNS)
 
-$(LEARN): $(READY)        ## what training needs; a build of torch for the CPU where there is one
-	$(BIN)/python -m pip install --quiet torch==2.13.0
-	$(BIN)/python -m pip install --quiet -e ".[train]"
-	touch $(LEARN)
+$(TOOLS): $(RUNS)
+	@echo "installing what its developers need: tests, types, format"
+	@$(PIP) install -e ".[dev]"
+	@touch $(TOOLS)
+
+$(LEARNS): $(TOOLS)
+	@echo "installing what training needs: torch, which is large"
+	@$(PIP) install torch==2.13.0
+	@$(PIP) install -e ".[train]"
+	@touch $(LEARNS)
 
 clean:
-	rm -rf .venv prunus-out
+	rm -rf .venv prunus-out dist

@@ -560,7 +560,7 @@ def _report(tasks: list[Any], failed: list[Any], options: Any, as_json: bool, jo
 
     with Teller(len(tasks), as_json) as teller:
         if tasks and not is_compiled():
-            teller.say("compiling the kernels (the first run only, about half a minute)")
+            teller.say("compiling the kernels (the first run only, about a minute)")
         for record in failed:
             teller.tell(record)
         for record in run(tasks, options, jobs):
