@@ -19,6 +19,7 @@ FLOORS = [
         "experiment",
         "isolation",
         "judge",
+        "schemas",
     },
     {"report", "evaluate", "simulate", "learn", "corrections"},
     {"pipeline", "graphs", "intake"},

@@ -65,7 +65,7 @@ def test_two_folders(tmp_path: Path) -> None:
     assert [row.split(",")[0] for row in table.read_text().splitlines()] == ["name", "a", "b"]
     (tmp_path / "out" / "b" / "skeleton.json").unlink()
     done = RUN.invoke(app, words)
-    assert done.exit_code == 2
+    assert done.exit_code == 1
     assert "no skeleton 'b'" in done.output
 
 
@@ -107,5 +107,5 @@ def test_bad_input_is_named(tmp_path: Path, found: str, says: str) -> None:
     write_skeleton(tmp_path / "gold.json", tree())
     (tmp_path / "gold.stl").write_text("solid")
     done = RUN.invoke(app, ["evaluate", str(tmp_path / found), str(tmp_path / "gold.json")])
-    assert done.exit_code == 2
+    assert done.exit_code == 1
     assert says in done.output.replace("\n", " ")

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from prunus.params import Parameters as Parameters
     from prunus.pipeline import skeletonize as skeletonize
     from prunus.result import Result as Result
+    from prunus.schemas import schema as schema
     from prunus.stages.confidence import EdgeScorer as EdgeScorer
 
 __version__ = "0.1.0"
@@ -38,6 +39,7 @@ _HOME = {
     "Skeleton": "prunus.model",
     "read_cloud": "prunus.intake",
     "read_skeleton": "prunus.io.skeletons",
+    "schema": "prunus.schemas",
     "search_graph": "prunus.graphs",
     "skeletonize": "prunus.pipeline",
     "write_skeleton": "prunus.io.skeletons",

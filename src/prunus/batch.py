@@ -15,6 +15,7 @@ from prunus.errors import PrunusError
 from prunus.intake import Scan, open_scan
 from prunus.io.export import write_ply, write_swc
 from prunus.io.inputs import clouds_in, is_one, names_of
+from prunus.io.records import EdgesByLabel, TreeRecord
 from prunus.io.safely import write_bytes
 from prunus.io.skeletons import write_skeleton
 from prunus.io.tables import csv_bytes, parquet_bytes, without_nan
@@ -33,7 +34,7 @@ from prunus.stages.confidence import EdgeScorer, HandmadeScorer
 from prunus.stages.networks import NetworkScorer
 
 Record = dict[str, Any]
-"""What `--json` prints of one tree."""
+"""What `--json` prints of one tree: a `TreeRecord`."""
 
 
 @dataclass(frozen=True)
@@ -96,10 +97,15 @@ def run(tasks: list[Task], options: Options, jobs: int) -> Iterator[Record]:
 
     The first run of all works on one tree alone, so that the kernels are compiled only once.
     """
-    alone = len(tasks) if jobs == 1 else 0 if is_compiled() else 1
+    alone = len(tasks) if jobs == 1 else 0 if is_compiled(_mode(options.params)) else 1
     yield from (attempt(task, options) for task in tasks[:alone])
     if tasks[alone:]:
         yield from _side_by_side(tasks[alone:], options, jobs)
+
+
+def _mode(params: Parameters) -> str:
+    """The choices on which it depends which kernels are run."""
+    return f"{params.superpoints.place} {params.confidence.edge_net} {params.search.score}"
 
 
 def _side_by_side(tasks: list[Task], options: Options, jobs: int) -> Iterator[Record]:
@@ -135,7 +141,7 @@ def do(task: Task, options: Options) -> Record:
         _ = result.refined
     with timed(seconds, "trust"):
         _ = result.review
-    mark_compiled()
+    mark_compiled(_mode(options.params))
     with timed(seconds, "write"):
         write_outputs(task.folder, result, scan, options.report)
         notes = write_traits(task.folder, result, scan.file.name) if options.traits else []
@@ -212,49 +218,32 @@ def _record(
     notes: list[str],
 ) -> Record:
     skeleton, graph = result.skeleton, result.graph
-    columns: list[Record] = []
+    columns: list[dict[str, float]] = []
     for kind in (0, 1):
         spent = {stage: round(both[kind], 4) for stage, both in seconds.items()}
         columns.append({**spent, "total": round(sum(both[kind] for both in seconds.values()), 4)})
-    return {
-        "file": str(task.path),
-        "ok": True,
-        "error": None,
-        "skeleton": str(task.folder / "skeleton.json"),
-        "score": result.score,
-        "points": len(scan.cloud),
-        "superpoints": len(graph.xyz),
-        "edges": len(graph.edges),
-        "tips": len(graph.tips),
-        "labels": {label.word: int(skeleton.edges_with(label).sum()) for label in Label},
-        "leaders": len(branches(skeleton, Label.LEADER)),
-        "side_branches": len(branches(skeleton, Label.SIDE_BRANCH)),
-        "cpu_s": columns[0],
-        "wall_s": columns[1],
-        "trust": None if result.trust is None else round(result.trust.tree, 4),
-        "review": result.review,
-        "warnings": [*scan.notes, *result.notes, *result.warnings, *notes],
-    }
+    return TreeRecord(
+        file=str(task.path),
+        ok=True,
+        error=None,
+        skeleton=str(task.folder / "skeleton.json"),
+        score=result.score,
+        points=len(scan.cloud),
+        superpoints=len(graph.xyz),
+        candidates=len(graph.edges),
+        edges=len(skeleton.edges),
+        tips=len(graph.tips),
+        labels=EdgesByLabel(**{one.word: int(skeleton.edges_with(one).sum()) for one in Label}),
+        leaders=len(branches(skeleton, Label.LEADER)),
+        side_branches=len(branches(skeleton, Label.SIDE_BRANCH)),
+        cpu_s=columns[0],
+        wall_s=columns[1],
+        trust=None if result.trust is None else round(result.trust.tree, 4),
+        review=result.review,
+        warnings=[*scan.notes, *result.notes, *result.warnings, *notes],
+    ).model_dump()
 
 
 def failure(path: Path, text: str) -> Record:
-    """The record of a file that could not be done: all keys, none with a value."""
-    return {
-        "file": str(path),
-        "ok": False,
-        "error": text,
-        "skeleton": None,
-        "score": None,
-        "points": None,
-        "superpoints": None,
-        "edges": None,
-        "tips": None,
-        "labels": None,
-        "leaders": None,
-        "side_branches": None,
-        "cpu_s": None,
-        "wall_s": None,
-        "trust": None,
-        "review": [],
-        "warnings": [],
-    }
+    """The record of a file that could not be done."""
+    return TreeRecord(file=str(path), ok=False, error=text).model_dump()

@@ -6,18 +6,34 @@ import os
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from prunus import __version__
-from prunus.errors import PrunusError
+from prunus.errors import OptionError, PrunusError, Status, blaming_the_command
 
 if TYPE_CHECKING:
     from prunus.params import Parameters
+    from prunus.progress import Waiting
+    from prunus.stages.networks import NetworkScorer
+
+
+class Prunus(TyperGroup):
+    """All commands: what is wrong is said in a line, and by the exit status."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run a command."""
+        try:
+            return super().invoke(ctx)
+        except PrunusError as error:
+            ctx.obj.say(f"prunus: {error}")
+            raise typer.Exit(Status.of(error)) from None
+
 
 app = typer.Typer(
-    add_completion=False,
+    cls=Prunus,
     no_args_is_help=True,
     rich_markup_mode="markdown",
     pretty_exceptions_enable=False,
@@ -26,11 +42,12 @@ app = typer.Typer(
 
 Try it: `prunus demo`
 
-One tree, base picked by hand: `prunus skeletonize tree.ply --base 1.40 0.90 1.42 -o out`
+Your own scan: `prunus skeletonize tree.ply -o out`
 
-A folder of trees, two at a time: `prunus skeletonize scans/ -o out --jobs 2`
+A folder of scans, two at a time: `prunus skeletonize scans/ -o out --jobs 2`
 """,
 )
+TREES, LEARNING, SHIPPED = "Trees", "Learning and judging", "What is shipped"
 
 
 class Frame(StrEnum):
@@ -77,6 +94,51 @@ class EdgeNet(StrEnum):
     PAPER = "paper"
 
 
+Place = tuple[float, float, float]
+OutputFolder = Annotated[Path, typer.Option("-o", "--output", help="Folder to write to.")]
+BasePoint = Annotated[
+    Place | None,
+    typer.Option(
+        "--base", "--at", help="Where the trunk meets the ground, in the file's frame and unit."
+    ),
+]
+FrameOfFile = Annotated[
+    Frame, typer.Option("--frame", help="Frame of the file; auto goes by the evidence in it.")
+]
+UnitOfFile = Annotated[
+    Unit | None, typer.Option("--unit", help="Unit of the file. [default: m, checked]")
+]
+Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of all that is random.")]
+Points = Annotated[
+    str | None,
+    typer.Option("--points", help="Points drawn at random, or 'all'. [default: 50000]"),
+]
+ParamsFile = Annotated[
+    Path | None,
+    typer.Option("--params", help="TOML as `prunus params` prints it; 'paper': as the paper."),
+]
+Weights = Annotated[
+    Path | None,
+    typer.Option(
+        "--weights", exists=True, dir_okay=False, help="Your own network, by `prunus train`."
+    ),
+]
+NoIsolate = Annotated[
+    bool, typer.Option("--no-isolate", help="The cloud is the tree alone: take nothing out.")
+]
+Scans = Annotated[
+    Path | None,
+    typer.Option(
+        "--scans", exists=True, file_okay=False, help="Where scans lie. [default: looked for]"
+    ),
+]
+Jobs = Annotated[int, typer.Option("--jobs", min=1, help="Trees at the same time.")]
+Simulated = Annotated[
+    ScanKind, typer.Option("--scan", help="field: all faults; clean: hardly any.")
+]
+CORES = os.cpu_count() or 1
+
+
 def _version(wanted: bool) -> None:
     if wanted:
         typer.echo(f"prunus {__version__}")
@@ -85,45 +147,34 @@ def _version(wanted: bool) -> None:
 
 @app.callback()
 def _prunus(
+    ctx: typer.Context,
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Say the version.")
     ] = False,
 ) -> None:
-    """Hold the options before any command."""
+    """Have every command told of while it is waited for."""
+    from prunus.progress import Waiting
+
+    ctx.obj = ctx.with_resource(Waiting())
 
 
-@app.command()
+@app.command(rich_help_panel=TREES)
 def skeletonize(
+    ctx: typer.Context,
     clouds: Annotated[list[Path], typer.Argument(help="Point clouds, bags, or folders of them.")],
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", help="Folder to write to. [default: prunus-out/NAME]"),
     ] = None,
-    base: Annotated[
-        tuple[float, float, float] | None,
-        typer.Option(help="A point where the trunk meets the ground, in the frame of the file."),
-    ] = None,
-    frame: Annotated[
-        Frame, typer.Option(help="Frame of the file; auto goes by the evidence in the cloud.")
-    ] = Frame.AUTO,
-    unit: Annotated[
-        Unit | None, typer.Option(help="Unit of the file. [default: m, checked]")
-    ] = None,
-    points: Annotated[
-        str | None, typer.Option(help="Points drawn at random, or 'all'. [default: 50000]")
-    ] = None,
-    params: Annotated[
-        Path | None,
-        typer.Option(help="Parameters as TOML, as every run writes it; 'paper': as in the paper."),
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
+    base: BasePoint = None,
+    frame: FrameOfFile = Frame.AUTO,
+    unit: UnitOfFile = None,
+    points: Points = None,
+    params: ParamsFile = None,
+    seed: Seed = 0,
     scorer: Annotated[Scorer, typer.Option(help="Who gives the edge confidence.")] = Scorer.CNN,
-    weights: Annotated[
-        Path | None, typer.Option(help="Your own network, made by `prunus train`.")
-    ] = None,
-    no_isolate: Annotated[
-        bool, typer.Option("--no-isolate", help="The cloud is the tree alone: take nothing out.")
-    ] = False,
+    weights: Weights = None,
+    no_isolate: NoIsolate = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.html.")] = False,
     traits: Annotated[
         bool, typer.Option("--traits", help="Write traits of branches and tree, CSV and Parquet.")
@@ -131,54 +182,49 @@ def skeletonize(
     json: Annotated[
         bool, typer.Option("--json", help="One line of JSON a tree on standard output.")
     ] = False,
-    jobs: Annotated[int, typer.Option(min=1, help="Trees worked on at the same time.")] = 1,
+    jobs: Jobs = 1,
 ) -> None:
-    """Turn clouds (PLY, PCD, XYZ, TXT, CSV, LAS, LAZ, NPY, NPZ, ROS bags) into labelled skeletons.
+    """Turn scans (clouds, ROS bags) into labelled skeletons.
 
-    Writes skeleton.json, skeleton.swc, skeleton.ply, refined.json, report.html and params.toml for
-    each tree.
+    Reads PLY, PCD, XYZ, TXT, CSV, LAS, LAZ, NPY, NPZ. Writes skeleton.json, .swc and .ply,
+    refined.json, report.html and params.toml for each tree.
 
-    In a camera's frame: `prunus skeletonize tree.ply --frame optical --base 1.4 0.9 1.4`
+    By hand: `prunus skeletonize tree.ply --base 1.40 0.90 1.42 -o out`
 
-    A topic of a ROS 1 or 2 bag: `prunus skeletonize row.mcap#/camera/points`
+    A camera's frame: `prunus skeletonize tree.ply --frame optical`
 
-    Many, for a script: `prunus skeletonize scans/*.ply -o out --jobs 4 --json > trees.jsonl`
+    A topic of a bag: `prunus skeletonize row.mcap#/camera/points`
+
+    For a script: `prunus skeletonize scans/ --jobs 4 --json > trees.jsonl`
     """
     from prunus.batch import Options, plan
 
-    try:
-        options = Options(
-            base, frame.value, unit and unit.value, _parameters(params, points, no_isolate), seed,
-            scorer.value, weights, not no_report, traits,
-        )  # fmt: skip
-    except PrunusError as error:
-        _stop(error)
+    if _network(weights) and scorer == Scorer.HANDMADE:
+        raise OptionError("--weights: of no use with --scorer handmade; expected one of them")
+    options = Options(
+        base, frame.value, unit and unit.value, _parameters(params, points, no_isolate), seed,
+        scorer.value, weights, not no_report, traits,
+    )  # fmt: skip
     tasks, failed = plan(clouds, output)
-    _report(tasks, failed, options, json, jobs)
+    _report(ctx.obj, tasks, failed, options, json, jobs)
 
 
-@app.command()
+@app.command(rich_help_panel=TREES)
 def isolate(
+    ctx: typer.Context,
     raw: Annotated[Path, typer.Argument(help="A raw scan: ground, posts, wires, neighbours.")],
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="The tree's own points (PLY, XYZ, NPZ).")
     ] = None,
-    at: Annotated[
-        tuple[float, float, float] | None,
-        typer.Option(help="Where the tree stands, in the frame of the file. [default: the middle]"),
-    ] = None,
+    base: BasePoint = None,
     list_: Annotated[bool, typer.Option("--list", help="Only list the trees in view.")] = False,
     every: Annotated[bool, typer.Option("--all", help="Write each tree in view.")] = False,
     classes: Annotated[
         bool, typer.Option("--classes", help="Write all points, with what each is (PLY).")
     ] = False,
-    frame: Annotated[
-        Frame, typer.Option(help="Frame of the file; auto goes by the evidence in the cloud.")
-    ] = Frame.AUTO,
-    unit: Annotated[
-        Unit | None, typer.Option(help="Unit of the file. [default: m, checked]")
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
+    frame: FrameOfFile = Frame.AUTO,
+    unit: UnitOfFile = None,
+    seed: Seed = 0,
 ) -> None:
     """Take one tree out of a raw scan; the scan itself stays as it is.
 
@@ -186,78 +232,230 @@ def isolate(
 
     One of them: `prunus isolate raw.ply -o tree.ply --at 0.35 1.10 1.45`
 
-    To see what each point was taken for: `prunus isolate raw.ply -o classes.ply --classes`
+    What each point was taken for: `prunus isolate raw.ply -o c.ply --classes`
     """
-    from prunus.isolation import Opened, list_trees, write_all, write_tree
+    waiting: Waiting = ctx.obj
+    if output is None and not list_:
+        raise OptionError("nowhere to write to: say -o TREE.ply, or --list")
+    if base is not None and (every or list_):
+        raise OptionError("--at: of one tree; expected neither --all nor --list beside it")
+    from prunus.isolation import Opened, check_output, list_trees, write_all, write_tree
 
-    try:
-        if output is None and not list_:
-            raise PrunusError("nowhere to write to: say -o TREE.ply, or --list")
-        opened = Opened.of(raw, frame.value, unit and unit.value, seed)
-        if output is None or list_:
-            lines = list_trees(opened)
-        elif every:
-            lines = write_all(opened, output, classes)
-        else:
-            lines = write_tree(opened, output, at, classes)
-    except PrunusError as error:
-        _stop(error)
-    for line in lines:
-        typer.echo(line)
+    if output is not None:
+        check_output(output, classes)
+    waiting.doing(f"looking at {raw}")
+    opened = Opened.of(raw, frame.value, unit and unit.value, seed)
+    if output is None or list_:
+        lines = list_trees(opened)
+    elif every:
+        lines = write_all(opened, output, classes)
+    else:
+        lines = write_tree(opened, output, base, classes)
+    waiting.tell(lines)
 
 
-@app.command()
-def demo(
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder to write to.")] = Path(
-        "prunus-out/demo"
-    ),
-    seed: Annotated[int, typer.Option(min=0, help="Another seed, another tree.")] = 0,
+@app.command(rich_help_panel=TREES)
+def cuts(
+    ctx: typer.Context,
+    source: Annotated[Path, typer.Argument(help="A skeleton (.json, .swc) or a point cloud.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Plan to write, as .json.")
+    ] = None,
+    rules: Annotated[
+        Path | None,
+        typer.Option(
+            exists=True, dir_okay=False, help="TOML; what it does not name is as `prunus rules`."
+        ),
+    ] = None,
+    base: BasePoint = None,
+    frame: FrameOfFile = Frame.AUTO,
+    unit: UnitOfFile = None,
+    points: Points = None,
+    params: ParamsFile = None,
+    seed: Seed = 0,
+    weights: Weights = None,
+    no_isolate: NoIsolate = False,
+    scans: Scans = None,
+    json: Annotated[bool, typer.Option("--json", help="The plan as one line of JSON.")] = False,
 ) -> None:
-    """Grow a tree, scan it, skeletonize the scan, compare with the truth, write the report."""
+    """Plan pruning cuts by rules: where the blade goes, and what is unsure.
+
+    From a scan: `prunus cuts tree.ply -o plan.json`
+
+    From a skeleton: `prunus cuts out/skeleton.json --rules mine.toml`
+
+    docs/cuts.md has the rules. A cut with a `look:` is for a person to look at before it is made.
+    """
+    from prunus.cutting import Source, cut_file, lines_of
+    from prunus.io.plans import write_plan
+    from prunus.measure.cuts import CutRules, shipped_rules
+
+    waiting: Waiting = ctx.obj
+    wanted = Source(
+        source, base, frame.value, unit and unit.value, scans,
+        _parameters(params, points, no_isolate), seed, _network(weights),
+    )  # fmt: skip
+    with blaming_the_command():
+        by = shipped_rules() if rules is None else CutRules.from_toml(rules)
+        wanted.check()
+    waiting.doing(f"planning cuts on {source}")
+    plan = cut_file(wanted, by)
+    if output is not None:
+        write_plan(output, plan)
+    waiting.tell([plan.model_dump_json()] if json else lines_of(plan))
+
+
+@app.command(rich_help_panel=TREES)
+def convert(
+    ctx: typer.Context,
+    source: Annotated[Path, typer.Argument(help="A skeleton (.json, .swc) or a point cloud.")],
+    target: Annotated[Path, typer.Argument(help="What to write; the ending says which kind.")],
+    unit: UnitOfFile = None,
+    cloud: Annotated[
+        Path | None, typer.Option(help="The cloud, to go into a bag (.mcap) with the tree.")
+    ] = None,
+    cuts: Annotated[
+        Path | None, typer.Option(help="A plan (see `prunus cuts`), to go into the bag as poses.")
+    ] = None,
+) -> None:
+    """Convert skeletons and clouds to what others read.
+
+    Skeletons: .json .swc .ply .graphml .glb .gltf .obj .mtg .cylinders.csv .treeqsm.csv
+    .txt (raycloudtools) .mcap (ROS 2). Clouds: .ply .xyz .txt .csv .npy .npz. What a kind of file
+    cannot hold is said.
+
+    For Blender, thick as it is: `prunus convert out/refined.json tree.glb`
+
+    For RViz or Foxglove: `prunus convert out/refined.json tree.mcap`
+
+    A cloud for another tool: `prunus convert tree.laz tree.xyz`
+    """
+    from prunus.convert import convert_file
+
+    waiting: Waiting = ctx.obj
+    waiting.doing(f"converting {source}")
+    for note in convert_file(source, target, unit and unit.value, cloud, cuts):
+        waiting.say(f"{target}: {note}")
+
+
+@app.command(rich_help_panel=TREES)
+def fuse(
+    ctx: typer.Context,
+    rig: Annotated[Path, typer.Argument(help="Folder with rig.json, or with *_cloud.ply.")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Cloud to write, as .ply.")],
+    report: Annotated[
+        Path | None, typer.Option(help="Write refined poses and residuals as JSON.")
+    ] = None,
+) -> None:
+    """Fuse depth images or partial clouds of a rig to one cloud.
+
+    Refines their poses together. docs/fuse.md describes rig.json. A view that does not fit the
+    others is left out, and said.
+
+    A rig to try it on: `prunus simulate -n 1 -o rig --views`
+
+    Its views: `prunus fuse rig/tree_000000 -o raw.ply`
+    """
+    from prunus.fusing import fuse_folder, lines_of
+
+    waiting: Waiting = ctx.obj
+    waiting.doing(f"fusing the views in {rig}")
+    fused = fuse_folder(rig, output, report)
+    waiting.tell([*lines_of(fused), f"{len(fused.xyz)} points written to {output}"])
+
+
+@app.command(rich_help_panel=TREES)
+def studio(
+    ctx: typer.Context,
+    path: Annotated[Path, typer.Argument(help="A scan, a skeleton.json, or a folder of them.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="Folder in which the work is kept.")
+    ] = Path("prunus-studio"),
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="The next free one is taken; 0: any.")
+    ] = 8080,
+    host: Annotated[
+        str, typer.Option(help="Address to listen on; other machines need the token then.")
+    ] = "127.0.0.1",
+    token: Annotated[
+        str | None, typer.Option(help="Asked for on the page. [default: random, off this machine]")
+    ] = None,
+    no_open: Annotated[bool, typer.Option("--no-open", help="Open no browser.")] = False,
+    frame: FrameOfFile = Frame.AUTO,
+    unit: UnitOfFile = None,
+    seed: Seed = 0,
+    params: ParamsFile = None,
+) -> None:
+    """Look at trees, clean, correct and label them, on a page in the browser.
+
+    A folder of scans: `prunus studio scans/ -o work`
+
+    On another machine, here by `ssh -t -L 8080:localhost:8080 there`: `prunus studio scans/
+    --no-open`
+    """
+    waiting: Waiting = ctx.obj
+    waiting.doing(f"opening {path}")
+    from prunus.corrections import Settings
+    from prunus.studio.start import open_studio
+
+    settings = Settings(
+        frame=frame.value, unit=unit and unit.value, seed=seed,
+        params=_parameters(params, None, False),
+    )  # fmt: skip
+
+    def say(line: str) -> None:
+        waiting.rest()
+        waiting.tell([line])
+
+    open_studio(path, output, settings, host, port, token, not no_open, say)
+
+
+@app.command(rich_help_panel=TREES)
+def demo(
+    ctx: typer.Context, output: OutputFolder = Path("prunus-out/demo"), seed: Seed = 0
+) -> None:
+    """Grow a tree, scan it, skeletonize the scan, compare with the truth.
+
+    Another seed, another tree: `prunus demo --seed 7`
+    """
     from prunus.batch import Options, Task
     from prunus.demo import compare, simulated_scan
 
-    try:
-        truth = simulated_scan(output, seed)
-    except PrunusError as error:
-        _stop(error)
+    waiting: Waiting = ctx.obj
+    waiting.doing("growing and scanning a tree")
+    truth = simulated_scan(output, seed)
     base = tuple(truth.xyz[0].tolist())
-    _report([Task(output / "scan.ply", output)], [], Options(base, "z-up", seed=seed), False, 1)
-    for line in [*compare(output, truth), f"  now open {output / 'report.html'}"]:
-        typer.echo(line)
+    options = Options(base, "z-up", seed=seed)
+    _report(waiting, [Task(output / "scan.ply", output)], [], options, False, 1)
+    waiting.tell([*compare(output, truth), f"  now open {output / 'report.html'}"])
 
 
-@app.command()
+@app.command(rich_help_panel=LEARNING)
 def simulate(
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder to write to.")],
+    ctx: typer.Context,
+    output: OutputFolder,
     trees: Annotated[int, typer.Option("-n", "--trees", min=1, help="How many trees.")] = 30,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the first; the next has the next.")] = 0,
-    scan: Annotated[ScanKind, typer.Option(help="field: all faults; clean: hardly any.")] = (
-        ScanKind.FIELD
-    ),
+    scan: Simulated = ScanKind.FIELD,
     views: Annotated[bool, typer.Option("--views", help="Write the depth images too.")] = False,
-    jobs: Annotated[int, typer.Option(min=1, help="Trees at the same time.")] = os.cpu_count() or 1,
+    jobs: Jobs = CORES,
 ) -> None:
-    """Grow an orchard and scan it: clouds with the truth of every point, and true skeletons.
+    """Grow an orchard and scan it: clouds, the truth of each point, skeletons.
 
     Thirty trees to learn from or to judge by: `prunus simulate -n 30 -o orchard`
     """
-    from prunus.progress import progress_bar
     from prunus.simulate.orchard import simulate_orchard
 
-    seeds = range(seed, seed + trees)
-    try:
-        with progress_bar() as bar:
-            work = bar.add_task("trees", total=trees)
-            for _ in simulate_orchard(output, seeds, scan.value, views, min(jobs, trees)):
-                bar.advance(work)
-    except PrunusError as error:
-        _stop(error)
-    typer.echo(f"{trees} trees written to {output}")
+    waiting: Waiting = ctx.obj
+    made = simulate_orchard(output, range(seed, seed + trees), scan.value, views, min(jobs, trees))
+    for _ in waiting.watch(made, "trees", trees):
+        pass
+    waiting.tell([f"{trees} trees written to {output}"])
 
 
-@app.command()
+@app.command(rich_help_panel=LEARNING)
 def train(
+    ctx: typer.Context,
     folders: Annotated[
         list[Path], typer.Argument(help="Simulated scans, or the studio's folders with labels.")
     ],
@@ -274,304 +472,207 @@ def train(
             "--from", help="Go on from: ours, paper, a file, scratch. [default: ours with labels]"
         ),
     ] = None,
-    scans: Annotated[
-        Path | None, typer.Option(help="Where the labelled scans lie. [default: looked for]")
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
+    scans: Scans = None,
+    seed: Seed = 0,
     epochs: Annotated[int | None, typer.Option(min=1, help="[default: as the recipe]")] = None,
-    jobs: Annotated[int, typer.Option(min=1, help="Scans at the same time.")] = os.cpu_count() or 1,
+    jobs: Jobs = CORES,
 ) -> None:
-    """Learn the edge confidence (or isolation) from simulated scans; prints the paper's tables.
+    """Learn the edge confidence (or isolation) from scans with their truth.
 
-    `prunus train orchard -o mine.onnx`, then `prunus skeletonize tree.ply --weights mine.onnx`
+    Prints the paper's tables.
 
-    From edges labelled in the studio, going on from our network: `prunus train prunus-studio -o
-    mine.onnx`
+    From simulated trees: `prunus train orchard -o mine.onnx`
+
+    From edges labelled in the studio: `prunus train prunus-studio -o mine.onnx`
+
+    To use it: `prunus skeletonize tree.ply --weights mine.onnx`
     """
+    waiting: Waiting = ctx.obj
+    waiting.doing("loading torch", at_once=True)
     from prunus.learn.school import Course, isolation_school, lines_of, school
-    from prunus.progress import bar_of, progress_bar
 
-    try:
-        with progress_bar() as bar:
-            course = Course(edge_net.value, start, seed, epochs, scans)
-            teach = isolation_school if network == Network.ISOLATION else school
-            report = teach(folders, output, course, jobs, bar_of(bar))
-    except PrunusError as error:
-        _stop(error)
+    course = Course(edge_net.value, start, seed, epochs, scans)
+    teach = isolation_school if network == Network.ISOLATION else school
+    report = teach(folders, output, course, jobs, waiting.watch)
     if network == Network.ISOLATION:
         kept, removed = report["test"]
-        typer.echo(f"test trees: {kept:.1%} of the points kept, {removed:.1%} of all others out")
-        return
-    for line in lines_of(report):
-        typer.echo(line)
+        found = f"test trees: {kept:.1%} of the points kept, {removed:.1%} of all others out"
+        waiting.tell([found])
+    else:
+        waiting.tell(lines_of(report))
 
 
-@app.command()
+@app.command(rich_help_panel=LEARNING)
 def evaluate(
+    ctx: typer.Context,
     skeleton: Annotated[Path, typer.Argument(help="A skeleton, or a folder of them.")],
     gold: Annotated[Path, typer.Argument(help="Its gold standard, or a folder of them.")],
     json: Annotated[bool, typer.Option("--json", help="One line of JSON a pair.")] = False,
     csv: Annotated[Path | None, typer.Option(help="Write a table, one row a pair.")] = None,
 ) -> None:
-    """Measure skeletons against gold standards: what was found, and what of it is right.
+    """Measure skeletons against gold standards: what was found, what is right.
+
+    Reads skeletons of other tools too (PLY edges, SWC, OBJ lines, GraphML), for the geometry.
 
     One pair: `prunus evaluate out/skeleton.json gold.json`
 
     Two folders: `prunus evaluate out orchard --csv measures.csv`
-
-    Reads skeletons of other tools too (PLY edges, SWC, OBJ lines, GraphML), for the geometry.
     """
     from json import dumps
 
     from prunus.io.safely import write_bytes
-    from prunus.io.tables import csv_bytes, without_nan
-    from prunus.judge import compare, pairs_in, spread_lines
+    from prunus.io.tables import csv_bytes
+    from prunus.judge import compare, pairs_in, spread_lines, strangers
 
-    try:
-        records = [without_nan(compare(*pair)) for pair in pairs_in(skeleton, gold)]
-        if csv is not None:
-            write_bytes(csv, csv_bytes(records))
-    except PrunusError as error:
-        _stop(error)
-    lines = [dumps(record) for record in records] if json else spread_lines(records)
-    for line in lines:
-        typer.echo(line)
+    waiting: Waiting = ctx.obj
+    pairs = pairs_in(skeleton, gold)
+    records = [compare(*pair) for pair in waiting.watch(pairs, "pairs", len(pairs))]
+    if csv is not None:
+        write_bytes(csv, csv_bytes(records))
+    for hint in strangers(records):
+        waiting.say(hint)
+    waiting.tell(map(dumps, records) if json else spread_lines(records))
 
 
-@app.command()
+@app.command(rich_help_panel=LEARNING)
 def experiment(
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder to write to.")],
+    ctx: typer.Context,
+    output: OutputFolder,
     trees: Annotated[int, typer.Option(min=1, help="How many trees.")] = 29,
     draws: Annotated[int, typer.Option(min=1, help="Draws of 50 000 points a tree.")] = 3,
-    scan: Annotated[ScanKind, typer.Option(help="field: all faults; clean: hardly any.")] = (
-        ScanKind.FIELD
-    ),
-    seed: Annotated[int, typer.Option(min=0, help="Another seed, other trees.")] = 0,
+    scan: Simulated = ScanKind.FIELD,
+    seed: Seed = 0,
     gold: Annotated[
         Path | None,
-        typer.Option(help="Your own trees in place of simulated ones: the studio's work folder."),
+        typer.Option(
+            exists=True,
+            file_okay=False,
+            help="Your own trees in place of simulated ones: the studio's work folder.",
+        ),
     ] = None,
-    scans: Annotated[
-        Path | None, typer.Option(help="Where your own scans lie. [default: looked for]")
-    ] = None,
+    scans: Scans = None,
     ablation: Annotated[
         bool, typer.Option("--ablation", help="Also what each part brings, one at a time.")
     ] = False,
-    jobs: Annotated[int, typer.Option(min=1, help="Trees at the same time.")] = os.cpu_count() or 1,
+    jobs: Jobs = CORES,
 ) -> None:
-    """Run the paper's result section on simulated trees or your own: tables, figures, a page.
+    """Run the paper's result section on simulated trees or your own.
+
+    Writes tables, figures, a page. Stopped half way, the same command goes on where it was.
 
     A quick look: `prunus experiment -o out --trees 6 --draws 1`
 
-    On your own trees, corrected in the studio: `prunus experiment --gold prunus-studio -o out`
-
-    Stopped half way, the same command goes on where it was.
-    """
+    On trees corrected in the studio: `prunus experiment --gold prunus-studio -o out`
+    """  # fmt: skip
     from prunus.experiment.results import Orchard, experiment, lines_of
-    from prunus.progress import bar_of, progress_bar
 
-    try:
+    waiting: Waiting = ctx.obj
+    with blaming_the_command():
         if gold is None:
             orchard = Orchard.simulated(trees, scan.value, seed)
         else:
             orchard = Orchard.corrected(gold, scans)
-        with progress_bar() as bar:
-            results = experiment(output, orchard, draws, ablation, jobs, bar_of(bar))
-    except PrunusError as error:
-        _stop(error)
-    for line in [*lines_of(results), "", f"written to {output / 'index.html'}"]:
-        typer.echo(line)
+    results = experiment(output, orchard, draws, ablation, jobs, waiting.watch)
+    waiting.tell([*lines_of(results), "", f"written to {output / 'index.html'}"])
 
 
-@app.command()
-def studio(
-    path: Annotated[Path, typer.Argument(help="A scan, a skeleton.json, or a folder of them.")],
-    output: Annotated[
-        Path, typer.Option("-o", "--output", help="Folder in which the work is kept.")
-    ] = Path("prunus-studio"),
-    port: Annotated[
-        int, typer.Option(min=0, max=65535, help="The next free one is taken; 0: any.")
-    ] = 8080,
-    host: Annotated[
-        str, typer.Option(help="Address to listen on; other machines need the token then.")
-    ] = "127.0.0.1",
-    token: Annotated[
-        str | None, typer.Option(help="Asked for on the page. [default: random, off this machine]")
-    ] = None,
-    no_open: Annotated[bool, typer.Option("--no-open", help="Open no browser.")] = False,
-    frame: Annotated[
-        Frame, typer.Option(help="Frame of the file; auto goes by the evidence in the cloud.")
-    ] = Frame.AUTO,
-    unit: Annotated[
-        Unit | None, typer.Option(help="Unit of the file. [default: m, checked]")
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of all that is random.")] = 0,
-    params: Annotated[
-        Path | None,
-        typer.Option(help="Parameters as TOML, as every run writes it; 'paper': as in the paper."),
-    ] = None,
-) -> None:
-    """Look at trees, clean, correct and label them, on a page in the browser.
+@app.command(rich_help_panel=SHIPPED)
+def rules(ctx: typer.Context) -> None:
+    """Print the pruning rules that are shipped, as `cuts --rules` reads them.
 
-    A folder of scans: `prunus studio scans/ -o work`
-
-    On another machine: `ssh -t -L 8080:localhost:8080 there prunus studio scans/ --no-open`
+    To change them: `prunus rules > mine.toml`
     """
-    from prunus.corrections import Settings
-    from prunus.studio.start import open_studio
+    from prunus.measure.cuts.settings import SHIPPED as FILE
 
-    try:
-        settings = Settings(
-            frame=frame.value, unit=unit and unit.value, seed=seed,
-            params=_parameters(params, None, False),
-        )  # fmt: skip
-        open_studio(path, output, settings, host, port, token, not no_open, typer.echo)
-    except PrunusError as error:
-        _stop(error)
+    ctx.obj.tell(FILE.read_text(encoding="utf-8").splitlines())
 
 
-@app.command()
-def fuse(
-    rig: Annotated[Path, typer.Argument(help="Folder with rig.json, or with *_cloud.ply.")],
-    output: Annotated[Path, typer.Option("-o", "--output", help="Cloud to write, as .ply.")],
-    report: Annotated[
-        Path | None, typer.Option(help="Write refined poses and residuals as JSON.")
-    ] = None,
+@app.command(rich_help_panel=SHIPPED)
+def params(
+    ctx: typer.Context,
+    method: Annotated[EdgeNet, typer.Argument(help="Ours, or the method as the paper has it.")] = (
+        EdgeNet.OURS
+    ),
 ) -> None:
-    """Fuse depth images or partial clouds of a rig to one cloud; refines their poses together.
+    """Print all parameters with symbol, unit and range, as `--params` reads them.
 
-    `prunus simulate -n 1 -o rig --views`, then `prunus fuse rig/tree_000000 -o raw.ply`
+    To change them: `prunus params > mine.toml`
 
-    docs/fuse.md describes rig.json. A view that does not fit the others is left out, and said.
+    Those of the paper: `prunus params paper`
     """
-    from prunus.fusing import fuse_folder, lines_of
+    from prunus.params import Parameters
 
-    try:
-        fused = fuse_folder(rig, output, report)
-    except PrunusError as error:
-        _stop(error)
-    for line in [*lines_of(fused), f"{len(fused.xyz)} points written to {output}"]:
-        typer.echo(line)
+    held = Parameters.paper() if method == EdgeNet.PAPER else Parameters()
+    ctx.obj.tell(held.to_toml().splitlines())
 
 
-@app.command()
-def cuts(
-    source: Annotated[Path, typer.Argument(help="A skeleton (.json, .swc) or a point cloud.")],
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Plan to write, as .json.")
-    ] = None,
-    rules: Annotated[
-        Path | None, typer.Option(help="Rules as TOML, where they differ from ours.")
-    ] = None,
-    base: Annotated[
-        tuple[float, float, float] | None,
-        typer.Option(help="Of a cloud: where the trunk meets the ground, in the file's frame."),
-    ] = None,
-    frame: Annotated[
-        Frame, typer.Option(help="Frame of the file; auto goes by the evidence in the cloud.")
-    ] = Frame.AUTO,
-    unit: Annotated[
-        Unit | None, typer.Option(help="Unit of the cloud. [default: m, checked]")
-    ] = None,
-    scans: Annotated[
-        Path | None, typer.Option(help="Where the scan of a skeleton lies. [default: looked for]")
-    ] = None,
-    json: Annotated[bool, typer.Option("--json", help="The plan as one line of JSON.")] = False,
+@app.command(rich_help_panel=SHIPPED)
+def schema(
+    ctx: typer.Context,
+    name: Annotated[str | None, typer.Argument(help="Which one. [default: list them]")] = None,
 ) -> None:
-    """Plan pruning cuts by rules: where the blade goes, how a tool comes to it, and what is unsure.
+    """Print the JSON Schema of a file or of a line that prunus writes.
 
-    From a scan: `prunus cuts tree.ply -o plan.json`
+    Which there are: `prunus schema`
 
-    From a skeleton, corrected or not, by rules of your own: `prunus cuts out/skeleton.json --rules
-    mine.toml`
-
-    docs/cuts.md has the rules. A cut with a `look:` is for a person to look at before it is made.
+    That of `skeletonize --json`: `prunus schema skeletonize`
     """
-    from prunus.cutting import Source, cut_file, lines_of
-    from prunus.io.plans import write_plan
-    from prunus.measure.cuts import CutRules, shipped_rules
+    from prunus.schemas import ABOUT, text_of
 
-    try:
-        wanted = shipped_rules() if rules is None else CutRules.from_toml(rules)
-        plan = cut_file(Source(source, base, frame.value, unit and unit.value, scans), wanted)
-        if output is not None:
-            write_plan(output, plan)
-    except PrunusError as error:
-        _stop(error)
-    for line in [plan.model_dump_json()] if json else lines_of(plan):
-        typer.echo(line)
+    if name is None:
+        ctx.obj.tell(f"{one:<12} {about}" for one, about in ABOUT.items())
+    else:
+        ctx.obj.tell(text_of(name).splitlines())
 
 
-@app.command()
-def convert(
-    source: Annotated[Path, typer.Argument(help="A skeleton (.json, .swc) or a point cloud.")],
-    target: Annotated[Path, typer.Argument(help="What to write; the ending says which kind.")],
-    unit: Annotated[Unit | None, typer.Option(help="Unit of a cloud. [default: m]")] = None,
-    cloud: Annotated[
-        Path | None, typer.Option(help="The cloud, to go into a bag (.mcap) with the tree.")
-    ] = None,
-    cuts: Annotated[
-        Path | None, typer.Option(help="A plan (see `prunus cuts`), to go into the bag as poses.")
-    ] = None,
-) -> None:
-    """Convert skeletons and clouds to what others read; says what a kind of file cannot hold.
+def _network(weights: Path | None) -> NetworkScorer | None:
+    """A network of one's own; OptionError where it is none, before anything is done."""
+    from prunus.stages.networks import NetworkScorer
 
-    Skeletons: .json .swc .ply .graphml .glb .gltf .obj .mtg .cylinders.csv .treeqsm.csv
-    .txt (raycloudtools) .mcap (ROS 2). Clouds: .ply .xyz .txt .csv .npy .npz.
-
-    For Blender, thick as it is: `prunus convert out/refined.json tree.glb`
-
-    For RViz or Foxglove: `prunus convert out/refined.json tree.mcap --cloud tree.ply --cuts
-    plan.json`
-
-    A cloud for another tool: `prunus convert tree.laz tree.xyz`
-    """
-    from prunus.convert import convert_file
-
-    try:
-        notes = convert_file(source, target, unit and unit.value, cloud, cuts)
-    except PrunusError as error:
-        _stop(error)
-    for note in notes:
-        typer.echo(f"{target}: {note}", err=True)
+    if weights is None:
+        return None
+    network = NetworkScorer(weights)
+    with blaming_the_command():
+        network.check()
+    return network
 
 
 def _parameters(path: Path | None, points: str | None, no_isolate: bool) -> Parameters:
     from prunus.params import Parameters
 
-    if path == Path("paper") and not path.exists():
-        params = Parameters.paper()
-    else:
-        params = Parameters() if path is None else Parameters.from_toml(path)
-    if no_isolate:
-        params = params.changed("isolation", isolate="never")
-    if points is None:
-        return params
-    if points not in ("all", "none") and not points.isdigit():
-        raise PrunusError(f"--points: {points!r}; expected a number or 'all'")
-    return params.changed("input", points=int(points) if points.isdigit() else points)
+    with blaming_the_command():
+        if path == Path("paper") and not path.exists():
+            params = Parameters.paper()
+        else:
+            params = Parameters() if path is None else Parameters.from_toml(path)
+        if no_isolate:
+            params = params.changed("isolation", isolate="never")
+        if points is None:
+            return params
+        if points not in ("all", "none") and not points.isdigit():
+            raise PrunusError(f"--points: {points!r}; expected a number or 'all'")
+        return params.changed("input", points=int(points) if points.isdigit() else points)
 
 
-def _report(tasks: list[Any], failed: list[Any], options: Any, as_json: bool, jobs: int) -> None:
+def _report(
+    waiting: Waiting, tasks: list[Any], failed: list[Any], options: Any, as_json: bool, jobs: int
+) -> None:
     """Run the tasks, say what came of each, and exit with 1 if any failed."""
     from prunus.batch import run
-    from prunus.kernels.compiled import is_compiled
     from prunus.progress import Teller
 
-    with Teller(len(tasks), as_json) as teller:
-        if tasks and not is_compiled():
-            teller.say("compiling the kernels (the first run only, about a minute)")
-        for record in failed:
-            teller.tell(record)
-        for record in run(tasks, options, jobs):
-            teller.tell(record)
+    teller = Teller(waiting, as_json)
+    for record in failed:
+        teller.tell(record)
+    if len(tasks) == 1:
+        waiting.doing(f"working on {tasks[0].path}")
+    else:
+        waiting.doing("trees", len(tasks))
+    for record in run(tasks, options, jobs):
+        teller.tell(record)
+    teller.sum_up()
     if teller.failures:
-        raise typer.Exit(1)
-
-
-def _stop(error: PrunusError) -> NoReturn:
-    typer.echo(f"prunus: {error}", err=True)
-    raise typer.Exit(2)
+        raise typer.Exit(Status.FAILED)
 
 
 def main() -> None:
@@ -580,7 +681,7 @@ def main() -> None:
         app()
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(1)
+        sys.exit(Status.FAILED)
 
 
 if __name__ == "__main__":

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from prunus.errors import PrunusError
-from prunus.io.clouds import read_cloud, write_cloud
+from prunus.errors import OptionError, PrunusError, blaming_the_command
+from prunus.io.clouds import check_kind, read_cloud, write_cloud
 from prunus.io.cylinders import write_cylinders, write_treeqsm
 from prunus.io.export import write_graphml, write_ply, write_swc
 from prunus.io.gltf import write_gltf
@@ -70,13 +70,14 @@ def convert_file(
     target is of no such kind.
     """
     if source.suffix.lower() not in (".json", ".swc"):
+        check_kind(target)
         held = read_cloud(source, unit)
         write_cloud(target, held.xyz, held.rgb)
         return []
     kind = kind_of(target)
     for name, path in (("cloud", cloud), ("cuts", cuts)):
         if path is not None and kind != ".mcap":
-            raise PrunusError(f"{target}: holds no {name}; expected a bag (.mcap)")
+            raise OptionError(f"{target}: holds no {name}; expected a bag (.mcap)")
     if kind == ".json" == source.suffix.lower():
         skeleton, record = read_record(source)
         write_skeleton(target, skeleton, **record.model_dump(include=EVIDENCE))
@@ -92,7 +93,8 @@ def convert_file(
         return notes
     points = None
     if cloud is not None:
-        held = read_cloud(cloud, unit)
+        with blaming_the_command():
+            held = read_cloud(cloud, unit)
         points = held.xyz, held.rgb
         notes += _rounding(held.xyz)
     write_mcap(target, skeleton, points, None if cuts is None else _poses(cuts))
@@ -104,7 +106,8 @@ def _poses(plan: Path) -> tuple[Floats, Floats]:
 
     Where no way is known, X lies anywhere.
     """
-    cuts = read_plan(plan).cuts
+    with blaming_the_command():
+        cuts = read_plan(plan).cuts
     places = np.array([cut.point for cut in cuts]).reshape(-1, 3)
     normal = np.array([cut.blade_normal for cut in cuts]).reshape(-1, 3)
     way = np.array([cut.approach.direction if cut.approach else (0, 0, 0) for cut in cuts])
@@ -115,7 +118,7 @@ def kind_of(target: Path) -> str:
     """The key in `FORMATS` of a file to be written; PrunusError where it is none."""
     kind = next((ending for ending in FORMATS if target.name.lower().endswith(ending)), None)
     if kind is None:
-        raise PrunusError(
+        raise OptionError(
             f"{target}: skeletons are not written as {target.suffix!r}; "
             f"expected one of {' '.join(FORMATS)}"
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +21,10 @@ from prunus.measure.cuts.plan import as_it_is
 from prunus.measure.cuts.reach import samples
 from prunus.measure.refine import Refined, refined
 from prunus.model import FRAMES, Floats, Label, PointCloud, RigidMotion, Skeleton
+from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.result import REFINED_WITH
+from prunus.stages.confidence import EdgeScorer
 
 SKELETONS = (".json", ".swc")
 OWN = 0.06
@@ -36,13 +38,33 @@ Place = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Source:
-    """What is planned on, how a cloud is read, and where scans are looked for."""
+    """What is planned on, how a cloud is read and skeletonized, and where scans are looked for."""
 
     path: Path
     base: Place | None = None
     frame: str = "auto"
     unit: str | None = None
     scans: Path | None = None
+    params: Parameters = field(default_factory=Parameters)
+    seed: int = 0
+    scorer: EdgeScorer | None = None
+
+    @property
+    def is_skeleton(self) -> bool:
+        """Whether there is a skeleton already."""
+        return self.path.suffix.lower() in SKELETONS
+
+    def check(self) -> None:
+        """Raise PrunusError where it says how to skeletonize what is a skeleton already."""
+        asked = {
+            "--base": self.base is not None,
+            "--params, --points and --no-isolate": self.params != Parameters(),
+            "--seed": self.seed != 0,
+            "--weights": self.scorer is not None,
+        }
+        given = [name for name, is_asked in asked.items() if is_asked]
+        if self.is_skeleton and given:
+            raise PrunusError(f"{given[0]}: of no use, since {self.path} is a skeleton already")
 
 
 def cut_file(source: Source, rules: CutRules) -> PlanFile:
@@ -51,10 +73,10 @@ def cut_file(source: Source, rules: CutRules) -> PlanFile:
     The cloud of a skeleton is looked for (see `io.original`); without it the skeleton is planned on
     as it is, and every cut needs review. Raises PrunusError as the readers do.
     """
-    if source.path.suffix.lower() in SKELETONS:
+    if source.is_skeleton:
         return _on_skeleton(source, rules)
     scan = open_scan(source.path, source.frame, source.unit)
-    result = skeletonize(scan.cloud, source.base)
+    result = skeletonize(scan.cloud, source.base, source.params, source.seed, source.scorer)
     plan = plan_cuts(result.refined, scan.cloud.xyz, rules)
     notes = [*scan.notes, *result.notes, *result.review]
     return plan_file(plan, scan.cloud.to_input, input=scan.record, notes=notes)

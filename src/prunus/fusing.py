@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
-from typing import Any
 
 from prunus.errors import PrunusError
-from prunus.io.clouds import WRITERS, write_cloud
+from prunus.io.clouds import check_kind, write_cloud
+from prunus.io.records import FusedFile, ViewFused
 from prunus.io.rig import read_rig
 from prunus.io.safely import write_bytes
 from prunus.sensing.fuse import Fused, Placed, fuse
@@ -18,11 +17,7 @@ def fuse_folder(folder: Path, output: Path, report: Path | None = None) -> Fused
 
     Raises PrunusError naming the file or the view, what was found and what was expected.
     """
-    if output.suffix.lower() not in WRITERS:
-        raise PrunusError(
-            f"{output}: clouds are not written as {output.suffix!r}; expected one of "
-            f"{' '.join(WRITERS)}"
-        )
+    check_kind(output)
     views = read_rig(folder)
     try:
         fused = fuse(views)
@@ -30,9 +25,8 @@ def fuse_folder(folder: Path, output: Path, report: Path | None = None) -> Fused
         raise PrunusError(f"{folder}: {error}") from error
     write_cloud(output, fused.xyz, fused.rgb)
     if report is not None:
-        record = {"format": "prunus-fused", "version": 1, "unit": "m"}
-        full = record | {"views": [_record(view) for view in fused.views]}
-        write_bytes(report, (json.dumps(full, indent=1) + "\n").encode())
+        told = FusedFile(views=[_record(view) for view in fused.views])
+        write_bytes(report, (told.model_dump_json(indent=1) + "\n").encode())
     return fused
 
 
@@ -53,21 +47,21 @@ def _line(view: Placed, wide: int) -> str:
     )
 
 
-def _record(view: Placed) -> dict[str, Any]:
-    """What the report says of a view; residuals in metres, null = no partner near."""
-    return {
-        "name": view.name,
-        "rotation": view.pose.rotation.tolist(),
-        "translation": view.pose.translation.tolist(),
-        "points": view.points,
-        "flying": view.flying,
-        "before": _known(view.before),
-        "after": _known(view.after),
-        "agree": view.agree,
-        "moved": view.moved,
-        "turned": view.turned,
-        "refused": view.refused or None,
-    }
+def _record(view: Placed) -> ViewFused:
+    """What the report says of a view."""
+    return ViewFused(
+        name=view.name,
+        rotation=view.pose.rotation.tolist(),
+        translation=view.pose.translation.tolist(),
+        points=view.points,
+        flying=view.flying,
+        before=_known(view.before),
+        after=_known(view.after),
+        agree=view.agree,
+        moved=view.moved,
+        turned=view.turned,
+        refused=view.refused or None,
+    )
 
 
 def _known(value: float) -> float | None:

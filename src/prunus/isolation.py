@@ -9,8 +9,8 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.intake import Scan, open_scan
-from prunus.io.classes import write_classes
-from prunus.io.clouds import FileCloud, write_cloud
+from prunus.io.classes import check_ply, write_classes
+from prunus.io.clouds import FileCloud, check_kind, write_cloud
 from prunus.model import Floats
 from prunus.params import Parameters
 from prunus.sensing.isolate import Isolated, Scene, check_at, isolate, look_at
@@ -46,6 +46,14 @@ class Opened:
             return isolate(self.scene, point)
         except PrunusError as error:
             raise PrunusError(f"{self.scan.file.path}: {error}") from error
+
+
+def check_output(path: Path, classes: bool) -> None:
+    """Raise OptionError where the ending of a file is none that can be written."""
+    if classes:
+        check_ply(path)
+    else:
+        check_kind(path)
 
 
 def write_tree(

@@ -12,7 +12,9 @@ from prunus.evaluate.curves import curve_measures, line_measures
 from prunus.evaluate.edits import edits, label_ratios, on_same_nodes
 from prunus.evaluate.found import branch_measures
 from prunus.io.lines import READERS, read_lines
+from prunus.io.records import PairRecord
 from prunus.io.skeletons import read_skeleton
+from prunus.io.tables import without_nan
 from prunus.model import Label, Skeleton
 
 Record = dict[str, Any]
@@ -67,12 +69,12 @@ def compare(name: str, predicted: Path, gold: Path) -> Record:
     """All measures of one pair; `labels` says whether both have them.
 
     Curve and branch measures; `edit_ratio` and the edits where both stand on the same superpoints.
-    Without labels the geometry alone.
+    Without labels the geometry alone. A measure of nothing is None.
     """
     ours, theirs = _labelled(predicted), _labelled(gold)
     if ours is None or theirs is None:
         measures = line_measures(read_lines(predicted), read_lines(gold))
-        return {"name": name, "labels": False, **measures}
+        return _record({"name": name, "labels": False, **measures})
     record: Record = {"name": name, "labels": True}
     both = on_same_nodes(ours, theirs)
     if both is not None:
@@ -81,7 +83,20 @@ def compare(name: str, predicted: Path, gold: Path) -> Record:
                    "mislabelled": needed.mislabelled, "edges": needed.edges}  # fmt: skip
         ratios = label_ratios([needed])
         record |= {f"{label.word}_edit_ratio": ratios[label][0] for label in Label}
-    return record | curve_measures(ours, theirs) | branch_measures(ours, theirs)
+    return _record(record | curve_measures(ours, theirs) | branch_measures(ours, theirs))
+
+
+def _record(measures: Record) -> Record:
+    return PairRecord.model_validate(without_nan(measures)).model_dump()
+
+
+def strangers(records: list[Record]) -> list[str]:
+    """A hint for each pair that has nothing in common."""
+    return [
+        f"{record['name']}: not 5 cm of one lie by the other; are both of one tree, in one frame?"
+        for record in records
+        if not record["geometry_recall"] and not record["geometry_precision"]
+    ]
 
 
 def _labelled(path: Path) -> Skeleton | None:

@@ -26,7 +26,7 @@ class _Group(BaseModel):
 
 
 class Input(_Group):
-    """What is read of the cloud (method.md 1)."""
+    """What is read of the cloud (docs/method.md)."""
 
     points: Annotated[int, Field(ge=1)] | Literal["all"] = _number(
         50_000, "P", "points", "points >= 1 drawn at random from the cloud, or 'all'"

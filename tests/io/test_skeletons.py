@@ -13,11 +13,10 @@ from hypothesis import strategies as st
 from prunus.errors import PrunusError
 from prunus.io.export import write_graphml, write_ply, write_swc
 from prunus.io.ply import read_ply
-from prunus.io.skeletons import read_record, read_skeleton, schema, write_skeleton
+from prunus.io.skeletons import read_record, read_skeleton, write_skeleton
 from prunus.model import Skeleton
+from prunus.schemas import schema
 from tests.drawn import tree
-
-SCHEMA = Path(__file__).resolve().parents[2] / "docs" / "skeleton.schema.json"
 
 
 def random_skeleton(seed: int) -> Skeleton:
@@ -52,7 +51,7 @@ def test_json_gives_back_every_bit(tmp_path_factory: pytest.TempPathFactory, see
     columns = ("xyz", "parent", "label", "confidence", "radius", "superpoint")
     assert same(back, skeleton, *columns)
     assert (record.score, record.seed) == (1.5, seed)
-    jsonschema.validate(json.loads(path.read_text()), json.loads(SCHEMA.read_text()))
+    jsonschema.validate(json.loads(path.read_text()), schema("skeleton"))
 
 
 @settings(deadline=None, max_examples=30)
@@ -62,10 +61,6 @@ def test_swc_gives_back_the_tree(tmp_path_factory: pytest.TempPathFactory, seed:
     path = tmp_path_factory.mktemp("swc") / "skeleton.swc"
     write_swc(path, skeleton)
     assert same(read_skeleton(path), skeleton, "xyz", "parent", "label", "radius")
-
-
-def test_the_committed_schema_is_that_of_the_code() -> None:
-    assert SCHEMA.read_text() == schema()
 
 
 def test_ply_holds_coloured_edges_and_named_columns(tmp_path: Path) -> None:

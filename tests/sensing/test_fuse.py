@@ -4,6 +4,7 @@ import json
 import math
 from pathlib import Path
 
+import jsonschema
 import numpy as np
 import pytest
 from typer.testing import CliRunner
@@ -14,6 +15,7 @@ from prunus.io.clouds import read_cloud, write_cloud
 from prunus.kernels.pixels import company
 from prunus.kernels.register import partners
 from prunus.model import Camera, CloudView, DepthView, Floats, RigidMotion, RigView
+from prunus.schemas import schema
 from prunus.sensing.fuse import VOXEL, fuse
 from prunus.sensing.register import turn_of, turned
 from prunus.sensing.views import back_projected, seen
@@ -182,14 +184,17 @@ def test_the_command_writes_the_cloud_and_says_the_residuals(tmp_path: Path) -> 
     assert done.stdout.count("view_") == 6 and "points written to" in done.stdout
     report = json.loads((tmp_path / "r.json").read_text())
     assert [view["refused"] for view in report["views"]] == [None] * 6
+    jsonschema.validate(report, schema("fused"))
+    rig = json.loads((tmp_path / "rig" / "rig.json").read_text())
+    jsonschema.validate(rig, schema("rig"))
     assert len(read_cloud(tmp_path / "raw.ply").xyz) > 50_000
 
 
-def test_the_command_stops_at_bad_input_with_status_2(tmp_path: Path) -> None:
+def test_the_command_stops_at_a_bad_input_and_at_a_bad_option(tmp_path: Path) -> None:
     write_cloud(tmp_path / "top_cloud.ply", np.eye(3))
-    for words, said in (
-        (["fuse", tmp_path / "none", "-o", tmp_path / "raw.ply"], "not a folder"),
-        (["fuse", tmp_path, "-o", tmp_path / "raw.stl"], "clouds are not written as '.stl'"),
+    for words, status, said in (
+        (["fuse", tmp_path / "none", "-o", tmp_path / "raw.ply"], 1, "not a folder"),
+        (["fuse", tmp_path, "-o", tmp_path / "raw.stl"], 2, "clouds are not written as '.stl'"),
     ):
         done = CliRunner().invoke(app, [str(word) for word in words])
-        assert done.exit_code == 2 and said in done.output
+        assert done.exit_code == status and said in done.output

@@ -1,4 +1,4 @@
-"""The corrected skeleton S*: what is notably wrong mended on the same superpoints (measures.md A).
+"""The corrected skeleton S*: what is notably wrong mended on the same superpoints (evaluation.md).
 
 A program plays the paper's evaluators. From parents to children, each true branch that counts gets
 the path of superpoints that follows it and keeps most of the skeleton given. Branches that need

@@ -1,4 +1,4 @@
-"""Curve measures: two labelled trees compared as curves, no graph needed (measures.md B)."""
+"""Curve measures: two labelled trees compared as curves, no graph needed (docs/evaluation.md)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Edit distances between a skeleton S and its correction S* (sec. Results; measures.md A)."""
+"""Edit distances between a skeleton S and its correction S* (sec. Results; docs/evaluation.md)."""
 
 from __future__ import annotations
 

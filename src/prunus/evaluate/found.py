@@ -1,4 +1,4 @@
-"""Branch measures: what was found of a true tree and where it hangs (measures.md B).
+"""Branch measures: what was found of a true tree and where it hangs (docs/evaluation.md).
 
 Nothing here is counted twice: one predicted branch finds one true branch at most.
 """

@@ -1,4 +1,4 @@
-"""The edge networks on the trees of the experiment: the paper's two tables (measures.md C)."""
+"""The edge networks on the trees of the experiment: the paper's two tables (docs/learning.md)."""
 
 from __future__ import annotations
 

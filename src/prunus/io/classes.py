@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from prunus.errors import PrunusError
+from prunus.errors import OptionError, PrunusError
 from prunus.io.clouds import WRITTEN, FileCloud, columns_of
 from prunus.io.ply import ply_bytes, read_ply, table_of
 from prunus.io.safely import read_bytes, write_bytes
@@ -20,10 +20,15 @@ KINDS = ", ".join(f"{kind.value} {kind.name.lower()}" for kind in Kind)
 
 def write_classes(path: Path, file: FileCloud, kind: NDArray[Any]) -> None:
     """Write all points of a file as PLY, with the class (P,) of each as property `kind`."""
-    if path.suffix.lower() != ".ply":
-        raise PrunusError(f"{path}: classes are written as .ply")
+    check_ply(path)
     columns = columns_of(file.xyz, file.rgb) | {"kind": kind.astype(np.uint8)}
     write_bytes(path, ply_bytes({"vertex": table_of(columns)}, [WRITTEN, f"kind: {KINDS}"]))
+
+
+def check_ply(path: Path) -> None:
+    """Raise OptionError where a file is not called as one of classes is."""
+    if path.suffix.lower() != ".ply":
+        raise OptionError(f"{path}: classes are written as .ply")
 
 
 def target_of(path: Path, points: int) -> Bools:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from prunus.errors import PrunusError
+from prunus.errors import OptionError, PrunusError
 from prunus.io.bags import read_bag
 from prunus.io.inputs import BAGS, Source, is_bag, source_of
 from prunus.io.ply import ply_bytes, table_of
@@ -87,13 +87,17 @@ def _read_file(path: Path, unit: str | None) -> FileCloud:
 def write_cloud(path: str | Path, xyz: Floats, rgb: Bytes | None = None) -> None:
     """Write a cloud as PLY, XYZ / TXT / CSV, NPY or NPZ by the ending; metres, double precision."""
     path = Path(path)
-    writer = WRITERS.get(path.suffix.lower())
-    if writer is None:
-        raise PrunusError(
+    check_kind(path)
+    write_bytes(path, WRITERS[path.suffix.lower()](xyz, rgb))
+
+
+def check_kind(path: Path) -> None:
+    """Raise OptionError where the ending of a file is none of a cloud that can be written."""
+    if path.suffix.lower() not in WRITERS:
+        raise OptionError(
             f"{path}: clouds are not written as {path.suffix!r}; "
             f"expected one of {' '.join(WRITERS)}"
         )
-    write_bytes(path, writer(xyz, rgb))
 
 
 def _finite(xyz: Floats, rgb: Bytes | None, path: Path) -> tuple[Floats, Bytes | None, list[str]]:

@@ -1,11 +1,10 @@
 """`plan.json`: the one module that reads and writes a pruning plan.
 
-Its JSON Schema is committed as docs/cuts.schema.json.
+Its JSON Schema is schemas/plan.json.
 """
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -108,8 +107,3 @@ def read_plan(path: str | Path) -> PlanFile:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"]) or "the file"
         raise PrunusError(f"{path}: {where}: {first['msg']}") from error
-
-
-def schema() -> str:
-    """The JSON Schema of `plan.json`, as committed in docs/."""
-    return json.dumps(PlanFile.model_json_schema(), indent=2) + "\n"

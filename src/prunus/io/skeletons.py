@@ -1,6 +1,6 @@
 """`skeleton.json`: the one module that reads and writes it.
 
-Its JSON Schema is committed as docs/skeleton.schema.json.
+Its JSON Schema is schemas/skeleton.json.
 """
 
 from __future__ import annotations
@@ -137,11 +137,6 @@ def read_skeleton(path: str | Path) -> Skeleton:
     from prunus.io.export import read_swc
 
     return read_swc(path) if Path(path).suffix.lower() == ".swc" else read_record(path)[0]
-
-
-def schema() -> str:
-    """The JSON Schema of `skeleton.json`, as committed in docs/."""
-    return json.dumps(SkeletonFile.model_json_schema(), indent=2) + "\n"
 
 
 def _nullable(values: Floats) -> list[float | None]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import platform
 import sys
 import tempfile
 from collections.abc import Callable
@@ -16,6 +17,10 @@ from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import numba
+
+from prunus.kernels.compiling import listen
+
+listen()
 
 Parameters = ParamSpec("Parameters")
 Returned = TypeVar("Returned")
@@ -49,18 +54,22 @@ def cache_dir() -> Path:
     return Path(tempfile.mkdtemp(prefix="prunus-"))
 
 
-def is_compiled() -> bool:
-    """Whether a whole run has filled the cache before."""
-    return _mark().exists()
+def is_compiled(mode: str) -> bool:
+    """Whether a whole run in this mode has filled the cache: this installation, this machine."""
+    return _mark(mode).exists()
 
 
-def mark_compiled() -> None:
-    """Remember that a whole run has filled the cache."""
-    _mark().touch()
+def mark_compiled(mode: str) -> None:
+    """Remember that a whole run in this mode has filled the cache."""
+    _mark(mode).touch()
 
 
-def _mark() -> Path:
-    return cache_dir() / "complete"
+def _mark(mode: str) -> Path:
+    """Named after what numba goes by: where a kernel lies, its time, and the machine."""
+    whole = hashlib.sha256(f"{mode} {platform.node()}".encode())
+    for source in sorted(Path(__file__).resolve().parent.glob("*.py")):
+        whole.update(f"{source} {source.stat().st_mtime_ns}".encode())
+    return cache_dir() / f"complete-{whole.hexdigest()[:16]}"
 
 
 def _user_cache() -> Path:

@@ -183,15 +183,20 @@ def kind_loss(found: Tensor, counts: Tensor) -> Tensor:
     return (each * points.sqrt()).sum() / points.sqrt().sum()
 
 
+def begun(start: Path | None) -> IsolationNet:
+    """The network with the parameters of the file that it starts from, if any."""
+    net = IsolationNet()
+    if start is not None:
+        go_on_from(start, net)
+    return net
+
+
 def train_isolation(
     training: list[RowExample], epochs: int, start: Path | None, rng: np.random.Generator
 ) -> Iterator[tuple[IsolationNet, float]]:
     """The network and its mean loss after each epoch; it goes on from the file `start`, if any."""
     torch.manual_seed(int(rng.integers(2**31)))
-    net, rate = IsolationNet(), RATE
-    if start is not None:
-        go_on_from(start, net)
-        rate = GOING_ON
+    net, rate = begun(start), RATE if start is None else GOING_ON
     pairs = [(one, tree) for one in training for tree in one.asked]
     optimizer = torch.optim.AdamW(net.parameters(), rate, weight_decay=1e-3)
     steps = epochs * math.ceil(len(pairs) / BATCH) + 1

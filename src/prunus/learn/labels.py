@@ -3,12 +3,12 @@
 **Valid**: the edge follows a stretch of the wood of one tree. That is, there is a stretch from
 within 6 cm of one end to within 6 cm of the other, the edge stays within 6 cm of it all along, and
 the way along it is about as long as the edge (from half to 1.5 times and 4 cm). The 6 cm are those
-within which an evaluator keeps an edge (measures.md A): superpoints are means of balls of 10 cm
+within which an evaluator keeps an edge (evaluation.md): superpoints are means of balls of 10 cm
 and lie beside the wood. The upper limit on the way decides on **edges that cut a corner**: one
 between two legs of up to 10 cm is valid, since no better superpoint need exist there; one across
 longer legs, or to the next leader, is not. The lower limit refuses edges across a thick branch.
 A branch counts from the first to the last place where the scan holds points of it, when that is at
-least 10 cm, and the half of it is seen (as in measures.md): nobody corrects what nobody can see.
+least 10 cm, and the half of it is seen (as in evaluation.md): nobody corrects what nobody can see.
 Within it wood that the cameras missed counts: to bridge a gap in a leader is right. Wires, posts
 and ground are no wood. The wood of a neighbour is wood.
 

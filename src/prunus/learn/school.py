@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from prunus.errors import PrunusError
+from prunus.errors import OptionError, PrunusError, blaming_the_command
 from prunus.io.safely import write_bytes
 from prunus.io.scans import scans_in
 from prunus.learn.examples import Example
@@ -51,10 +51,12 @@ def school(
     try:
         from prunus.learn import recipes, train
     except ImportError as error:
-        raise PrunusError("training needs torch and onnx: pip install 'prunus[train]'") from error
+        raise OptionError("training needs torch and onnx: pip install 'prunus[train]'") from error
     sources = Sources.among(folders)
     name = course.edge_net
     recipe = recipes.recipe_for(name, course.begins(sources), course.epochs)
+    with blaming_the_command():
+        recipe.network()
     rng = np.random.default_rng(course.seed)
     cover = (Parameters.paper() if name == "paper" else Parameters()).superpoints
     lessons = lessons_from(sources, course.scans, course.seed, jobs, cover, watch, rng)
@@ -115,11 +117,13 @@ def isolation_school(
     try:
         from prunus.learn import isolation
     except ImportError as error:
-        raise PrunusError("training needs torch and onnx: pip install 'prunus[train]'") from error
+        raise OptionError("training needs torch and onnx: pip install 'prunus[train]'") from error
     folders = [scan for folder in inputs for scan in scans_in(folder)]
     if len(folders) < 5:
         raise PrunusError(f"{inputs[0]}: {len(folders)} simulated trees; expected at least 5")
     seed, start = course.seed, None if course.start in (None, "scratch") else Path(course.start)
+    with blaming_the_command():
+        isolation.begun(start)
     made = list(watch(isolation.row_examples(folders, seed, jobs), "examples", len(folders)))
     first_test = int(TRAINING * len(folders))
     training = [example for of_scan in made[:first_test] for example in of_scan]

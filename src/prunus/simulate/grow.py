@@ -1,7 +1,7 @@
 """A UFO cherry tree from a random generator, as a true skeleton with radii.
 
 Trunk, one or two wavy supports, leaders that leave along the support and bend up, the whole plane
-leaning as in a V trellis (sec. UFO tree description; method.md, last section). Every number comes
+leaning as in a V trellis (sec. UFO tree description; docs/simulation.md). Every number comes
 from `habits.toml`, the habits that break the method among them; thin wood is in `shoots`.
 House frame, metres: X along the row, Y depth (cameras stand at smaller Y), Z up, ground at Z = 0.
 """

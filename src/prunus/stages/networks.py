@@ -44,6 +44,10 @@ class NetworkScorer:
         """The network that the package ships under that name: paper or ours."""
         return cls(WEIGHTS / f"{edge_net}.onnx", "cnn" if edge_net == "ours" else f"cnn {edge_net}")
 
+    def check(self) -> None:
+        """Raise PrunusError where the file is no edge network."""
+        open_network(self.path, SHOWN, TOLD)
+
     def __call__(self, candidates: CandidateGraph) -> Floats:
         """Confidence (E,)."""
         return self.judge(candidates)[0]

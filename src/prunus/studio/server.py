@@ -11,7 +11,7 @@ import warnings
 import viser
 
 from prunus.corrections import Settings
-from prunus.errors import PrunusError
+from prunus.errors import OptionError
 from prunus.studio.camera import FOV
 from prunus.studio.desk import Desk
 from prunus.studio.door import Door, is_loopback, own_page
@@ -93,4 +93,4 @@ def _check_address(host: str) -> None:
             probe.bind(address)
     except OSError as error:
         text = f"--host {host}: no address of this machine ({error.strerror})"
-        raise PrunusError(text) from error
+        raise OptionError(text) from error

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from operator import itemgetter
 from pathlib import Path
 
-from prunus.errors import PrunusError
+from prunus.errors import OptionError, PrunusError
 from prunus.io.inputs import clouds_in, is_one, names_of, source_of
 from prunus.io.safely import check_readable
 
@@ -35,7 +35,7 @@ def items_in(path: Path, output: Path) -> list[Item]:
     for name, source in sorted(zip(names, sources, strict=True), key=itemgetter(0)):
         folder = output / name
         if folder.resolve() == source.parent.resolve():
-            raise PrunusError(f"{source}: lies where the work on it would be kept; say -o DIR")
+            raise OptionError(f"{source}: lies where the work on it would be kept; say -o DIR")
         if folder not in [item.folder for item in items]:
             items.append(Item(name, source, folder))
     return items

@@ -12,7 +12,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from prunus.corrections import Settings
-from prunus.errors import PrunusError
+from prunus.errors import OptionError
 from prunus.studio.door import is_loopback, new_token
 from prunus.studio.shelf import items_in
 
@@ -32,7 +32,7 @@ def open_studio(
     Raises PrunusError where there is nothing to open, or viser is not installed.
     """
     if find_spec("viser") is None:
-        raise PrunusError('prunus studio needs viser: pip install "prunus[studio]"')
+        raise OptionError('prunus studio needs viser: pip install "prunus[studio]"')
     from prunus.studio.server import Studio
 
     if token == "" or (token is None and not is_loopback(host)):
