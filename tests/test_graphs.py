@@ -75,13 +75,13 @@ EDGES = [(0, 1), (1, 2)]
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"nodes": NODES[:, :2]}, r"shape \(3, 2\); expected \(P, 3\)"),
-        ({"edges": [(0, 1, 2)]}, r"edges: shape \(1, 3\); expected \(E, 2\)"),
+        ({"nodes": NODES[:, :2]}, r"nodes: shape \(3, 2\); expected \(N, 3\)"),
+        ({"edges": [(0, 1, 2)]}, r"edges: shape \(1, 3\); expected \(N, 2\)"),
         ({"edges": [(0, 1), (1, 7)]}, "edges: holds 0 to 7; expected 0 to 2"),
         ({"edges": [(0, 1), (1, 0)]}, "edges: a pair stands twice"),
-        ({"edges": [(0, 1), (1, 1)]}, "edges: one joins two nodes in the same place"),
+        ({"edges": [(0, 1), (1, 1)]}, "edges: one joins a node to itself"),
         ({"edges": [(0.5, 1), (1, 2)]}, "edges: float64; expected integers"),
-        ({"confidence": [0.5]}, r"confidence: shape \(1,\); expected 2 numbers"),
+        ({"confidence": [0.5]}, r"confidence: shape \(1,\); expected \(2,\)"),
         ({"confidence": [0.5, 1.5]}, "expected 2 numbers from 0 to 1"),
         ({"confidence": [0.5, np.nan]}, "expected 2 numbers from 0 to 1"),
         ({"base": 9}, "base: holds 9 to 9; expected 0 to 2"),

@@ -23,6 +23,7 @@ FLOORS = [
     },
     {"report", "evaluate", "simulate", "learn", "corrections"},
     {"pipeline", "graphs", "intake"},
+    {"plausible"},
     {"result"},
     {"sensing", "search", "stages", "measure", "io"},
     {"rules", "grammar", "params", "kernels"},

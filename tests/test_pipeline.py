@@ -53,28 +53,15 @@ def test_a_frame_that_the_cloud_contradicts_is_remarked_on(real_scan: Path) -> N
     assert open_scan(real_scan, "optical").notes == []
 
 
-@pytest.mark.parametrize(
-    ("points", "message"),
-    [
-        (np.zeros((1, 3)), "no superpoint holds 8 points"),
-        (np.zeros((500, 3)), "no tips of leaders were found"),
-        (np.linspace(0, 1, 3000).reshape(1000, 3) * [1, 0, 0], "no tips of leaders were found"),
-    ],
-)
-def test_clouds_without_a_tree_are_refused(points: np.ndarray, message: str) -> None:
-    with pytest.raises(PrunusError, match=message):
-        skeletonize(points)
-
-
-def test_points_on_an_upright_line_are_a_bare_trunk_or_leader() -> None:
-    line = np.column_stack([np.zeros(3000), np.zeros(3000), np.linspace(0, 2, 3000)])
-    found = skeletonize(line, (0, 0, 0), Parameters.paper())
+def test_a_whip_is_a_bare_trunk_or_leader(rng: np.random.Generator) -> None:
+    whip = np.column_stack([*rng.normal(0, 0.008, (2, 3000)), np.linspace(0, 2, 3000)])
+    found = skeletonize(whip, (0, 0, 0), Parameters.paper())
     assert found.skeleton.xyz[:, 2].max() > 1.8
 
 
 @pytest.mark.parametrize("base", [(1, 2), "here", (0, 0, np.nan)])
 def test_a_base_that_is_no_point_is_refused(base: object) -> None:
-    with pytest.raises(PrunusError, match="the base is"):
+    with pytest.raises(PrunusError, match="base: "):
         skeletonize(np.zeros((10, 3)), base)
 
 

@@ -158,19 +158,15 @@ def scorer_of(options: Options) -> EdgeScorer:
 
 
 def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> None:
-    """skeleton.json, .swc and .ply, refined.json, params.toml and, where wanted, report.html.
-
-    The skeleton of the graph has the radii of the refined one.
-    """
+    """skeleton.json, .swc and .ply, refined.json, params.toml and, where wanted, report.html."""
     if folder.exists() and not folder.is_dir():
         raise PrunusError(f"{folder}: is a file; expected a folder to write to")
     if report:
         plan = plan_cuts(result.refined, result.scan.xyz)
         page = report_page(result, scan.file.name, [*scan.notes, *result.notes], plan)
         write_bytes(folder / "report.html", page.encode())
-    skeleton = result.skeleton.with_radius(result.refined.radius_at(result.skeleton.superpoint))
-    write_swc(folder / "skeleton.swc", skeleton)
-    write_ply(folder / "skeleton.ply", skeleton)
+    write_swc(folder / "skeleton.swc", result.skeleton)
+    write_ply(folder / "skeleton.ply", result.skeleton)
     write_bytes(folder / "params.toml", result.params.to_toml().encode())
     evidence = {
         "score": result.score,
@@ -182,7 +178,7 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
     fine = result.refined.skeleton.moved(result.graph.superpoints.cloud.to_input)
     trust = trust_record(result.in_house, result.trust)
     write_skeleton(
-        folder / "skeleton.json", skeleton, trust=trust, review=result.review, **evidence
+        folder / "skeleton.json", result.skeleton, trust=trust, review=result.review, **evidence
     )
     write_skeleton(folder / "refined.json", fine, **evidence)
 

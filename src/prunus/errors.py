@@ -11,6 +11,10 @@ class PrunusError(ValueError):
     """Bad input: the message names the file or field, what was found and what was expected."""
 
 
+class NoTreeError(PrunusError):
+    """Nothing that can be a tree was found: the message says why, and what to try."""
+
+
 class OptionError(PrunusError):
     """Not an input but the command is wrong: an option, or the file that an option names."""
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from prunus.errors import PrunusError
+from prunus.errors import NoTreeError, PrunusError
 from prunus.model import (
     CandidateGraph,
     Floats,
@@ -19,7 +19,8 @@ from prunus.model import (
     Skeleton,
     Superpoints,
 )
-from prunus.params import Parameters
+from prunus.model.arrays import Shape, frozen
+from prunus.params import Parameters, checked_params, checked_seed
 from prunus.search import search
 from prunus.stages.seeds import find_tips
 
@@ -54,22 +55,29 @@ def search_graph(
 
     nodes (N, 3) metres, Z up, X along the row; edges (E, 2) undirected pairs of nodes; confidence
     (E,) in [0, 1]; base and tips (T,) node indices, tips found as in the paper when None.
-    Raises PrunusError naming the argument, what was found and what was expected.
+    Raises PrunusError naming the argument, what was found and what was expected, or where nothing
+    can be grown from the base.
     """
-    params = params or Parameters()
+    params = checked_params(params)
+    rng = np.random.default_rng(checked_seed(seed))
     graph = _checked_graph(nodes, edges, confidence, params)
     count = len(graph.xyz)
-    _check_indices("base", np.array([base]), count)
+    root = int(_indices("base", [base], (1,), count)[0])
     if tips is None:
         ends = find_tips(graph.xyz, graph.edges, graph.confidence, params)
     else:
-        _check_indices("tips", np.asarray(tips), count)
-        ends = np.unique(np.asarray(tips, np.int64))
-    ends = ends[ends != base]
+        ends = np.unique(_indices("tips", tips, (None,), count))
+    ends = ends[ends != root]
     if len(ends) == 0:
         raise PrunusError("tips: none found; expected one or more nodes to grow to, not the base")
-    seeded = SeededGraph(graph, int(base), ends)
-    found = search(seeded, params, np.random.default_rng(seed))
+    seeded = SeededGraph(graph, root, ends)
+    found = search(seeded, params, rng)
+    if len(found.skeleton) == 1:
+        raise NoTreeError(
+            f"no tree was found: nothing that pays its way leaves the base, node {root} "
+            f"({_degree(graph, root)} of {len(graph.edges)} edges meet there); expected edges of a "
+            f"confidence over {params.confidence.alpha_conf:g} that lead upright from it to a tip"
+        )
     back = graph.candidates.superpoints.cloud.to_input
     pairs = found.skeleton.superpoint[found.skeleton.edges]
     words = np.array([Label(label).word for label in found.skeleton.label[1:]], dtype=np.str_)
@@ -79,21 +87,17 @@ def search_graph(
 def _checked_graph(
     nodes: ArrayLike, edges: ArrayLike, confidence: ArrayLike, params: Parameters
 ) -> ScoredGraph:
-    cloud = PointCloud.from_xyz(nodes)
-    count = len(cloud)
-    pairs = np.asarray(edges)
-    if pairs.size == 0:
-        pairs = pairs.reshape(0, 2)
-    if pairs.ndim != 2 or pairs.shape[1] != 2:
-        raise PrunusError(f"edges: shape {pairs.shape}; expected (E, 2)")
-    _check_indices("edges", pairs, count)
-    pairs = np.sort(pairs.astype(np.int64), axis=1)
+    cloud = PointCloud.from_xyz(frozen(nodes, np.float64, (None, 3), "nodes"))
+    pairs = np.sort(_indices("edges", edges, (None, 2), len(cloud)), axis=1)
+    if (pairs[:, 0] == pairs[:, 1]).any():
+        raise PrunusError("edges: one joins a node to itself; expected two nodes")
     if (cloud.xyz[pairs[:, 0]] == cloud.xyz[pairs[:, 1]]).all(axis=1).any():
         raise PrunusError("edges: one joins two nodes in the same place; expected a length")
-    values = np.asarray(confidence, np.float64)
-    if values.shape != (len(pairs),) or not ((values >= 0) & (values <= 1)).all():
+    values = frozen(confidence, np.float64, (len(pairs),), "confidence")
+    if not ((values >= 0) & (values <= 1)).all():
         raise PrunusError(
-            f"confidence: shape {values.shape}; expected {len(pairs)} numbers from 0 to 1"
+            f"confidence: holds {values.min():.9g} to {values.max():.9g}; expected "
+            f"{len(pairs)} numbers from 0 to 1"
         )
     order = np.lexsort([pairs[:, 1], pairs[:, 0]])
     pairs, values = pairs[order], values[order]
@@ -103,10 +107,14 @@ def _checked_graph(
     return ScoredGraph.of_confidence(CandidateGraph(own, pairs), values, "given")
 
 
-def _check_indices(name: str, indices: NDArray[np.int64], count: int) -> None:
-    if not np.issubdtype(indices.dtype, np.integer):
-        raise PrunusError(f"{name}: {indices.dtype}; expected integers, indices of nodes")
-    if indices.size and (indices.min() < 0 or indices.max() >= count):
+def _indices(name: str, indices: ArrayLike, shape: Shape, count: int) -> Ints:
+    found: Ints = frozen(indices, np.int64, shape, name)
+    if found.size and (found.min() < 0 or found.max() >= count):
         raise PrunusError(
-            f"{name}: holds {indices.min()} to {indices.max()}; expected 0 to {count - 1}"
+            f"{name}: holds {found.min()} to {found.max()}; expected 0 to {count - 1}"
         )
+    return found
+
+
+def _degree(graph: ScoredGraph, node: int) -> int:
+    return int((graph.edges == node).any(axis=1).sum())

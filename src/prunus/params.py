@@ -4,11 +4,22 @@ from __future__ import annotations
 
 import json
 import math
+import operator
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+import numpy as np
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from prunus.errors import PrunusError
 
@@ -22,7 +33,21 @@ def _number(default: Any, symbol: str, unit: str, about: str, **limits: Any) -> 
 
 
 class _Group(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", allow_inf_nan=False, revalidate_instances="always"
+    )
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _plain(cls, value: Any, info: ValidationInfo) -> Any:
+        """A scalar of numpy as Python's own; true is not 1."""
+        value = value.item() if isinstance(value, np.generic) else value
+        if (
+            isinstance(value, bool)
+            and cls.model_fields[str(info.field_name)].annotation is not bool
+        ):
+            raise ValueError("input should be no truth value")
+        return value
 
 
 class Input(_Group):
@@ -53,7 +78,7 @@ class Cover(_Group):
     """Superpoint selection."""
 
     r_super: float = _number(
-        0.10, "r_super", "m", "radius of the balls that cover the cloud", gt=0, le=10
+        0.10, "r_super", "m", "radius of the balls that cover the cloud", ge=0.01, le=1
     )
     min_points: int = _number(
         8, "min_points", "points", "balls with fewer points are noise", ge=1, le=10_000
@@ -62,10 +87,10 @@ class Cover(_Group):
         "axes", "-", "-", "'axes': along the branches and where they meet; 'random': as the paper"
     )
     along: float = _number(
-        0.08, "-", "m", "a superpoint on an axis covers so much of it to either end", gt=0, le=10
+        0.08, "-", "m", "a superpoint on an axis covers so much of it to either end", ge=0.01, le=1
     )
     across: float = _number(
-        0.04, "-", "m", "and what of the drawn-together cloud is so near the axis", gt=0, le=10
+        0.04, "-", "m", "and what of the drawn-together cloud is so near the axis", ge=0.01, le=1
     )
 
 
@@ -73,7 +98,7 @@ class Confidence(_Group):
     """Edge evaluation."""
 
     alpha_conf: float = _number(
-        0.40, "alpha_conf", "1", "edges under this confidence cost score", ge=0, lt=1
+        0.40, "alpha_conf", "1", "edges under this confidence cost score", ge=0, le=0.99
     )
     floor: Annotated[float, Field(ge=0, lt=1)] | Literal["auto"] = _number(
         "auto", "-", "1",
@@ -119,7 +144,7 @@ class Search(_Group):
         "once (a scorer that tells no categories gets the paper's)",
     )  # fmt: skip
 
-    K: int = _number(500, "K", "skeletons", "size of the population", ge=1, le=1_000_000)
+    K: int = _number(500, "K", "skeletons", "size of the population", ge=1, le=100_000)
     k_max_rep: int = _number(
         3, "k_MaxRep", "skeletons", "copies of one skeleton in the population", ge=1, le=1_000_000
     )
@@ -180,6 +205,13 @@ class Parameters(_Group):
     leaders: Leaders = Leaders()
     side_branches: SideBranches = SideBranches()
 
+    def __init__(self, **groups: Any) -> None:
+        """The groups as such, or as dicts; PrunusError naming the field otherwise."""
+        try:
+            super().__init__(**groups)
+        except ValidationError as error:
+            raise PrunusError(f"params: {_first_problem(error)}") from error
+
     @classmethod
     def paper(cls) -> Parameters:
         """The method as the paper has it, without what we do beyond it."""
@@ -194,7 +226,9 @@ class Parameters(_Group):
 
     @classmethod
     def parse(cls, values: Any, source: str = "params") -> Parameters:
-        """Parameters from nested dicts; PrunusError naming `source` and the field otherwise."""
+        """Parameters from nested dicts, or checked again; PrunusError naming source and field."""
+        if isinstance(values, Mapping):
+            values = {str(name): group for name, group in values.items()}
         try:
             return cls.model_validate(values)
         except ValidationError as error:
@@ -203,19 +237,20 @@ class Parameters(_Group):
     @classmethod
     def from_toml(cls, path: str | Path) -> Parameters:
         """Parameters from a TOML file; what it does not name keeps its default."""
-        path = Path(path)
         try:
-            values = tomllib.loads(path.read_text(encoding="utf-8"))
+            values = tomllib.loads(Path(path).read_text(encoding="utf-8"))
         except OSError as error:
             raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        except TypeError as error:
+            raise PrunusError(f"params: {path!r}; expected the name of a file") from error
+        except ValueError as error:
             raise PrunusError(f"{path}: not a TOML file: {error}") from error
         return cls.parse(values, str(path))
 
     def changed(self, group: str, **values: Any) -> Parameters:
         """The same parameters with some values of one group replaced."""
         nested = self.model_dump()
-        nested[group] |= values
+        nested[group] = nested.get(group, {}) | values
         return Parameters.parse(nested)
 
     def to_toml(self) -> str:
@@ -232,6 +267,22 @@ class Parameters(_Group):
         return "\n".join(lines)
 
 
+def checked_params(params: Any) -> Parameters:
+    """Parameters that a caller gave, as such or as nested dicts, checked; None: ours."""
+    return Parameters() if params is None else Parameters.parse(params)
+
+
+def checked_seed(seed: Any) -> int:
+    """A seed that a caller gave; PrunusError where it is no whole number from 0."""
+    try:
+        number = -1 if isinstance(seed, bool | np.bool_) else operator.index(seed)
+    except TypeError:
+        number = -1
+    if number < 0:
+        raise PrunusError(f"seed: {seed!r}; expected a whole number from 0")
+    return number
+
+
 def _about(field: Any) -> str:
     extra = field.json_schema_extra
     limits = ", ".join(
@@ -246,13 +297,16 @@ def _about(field: Any) -> str:
 
 def _first_problem(error: ValidationError) -> str:
     first = error.errors()[0]
+    told = first.get("ctx", {}).get("error")
+    if isinstance(told, PrunusError):
+        return str(told).removeprefix("params: ")
     where = [str(part) for part in first["loc"][:2]]
     name = ".".join(where)
     if first["type"] == "extra_forbidden":
         return f"{name}: unknown parameter; expected one of {', '.join(_known(where[:-1]))}"
     message = first["msg"].removeprefix("Value error, ")
     message = message[0].lower() + message[1:]
-    return f"{name}: {message}; found {first['input']!r}"
+    return f"{name}{': ' if name else ''}{message}; found {first['input']!r}"
 
 
 def _known(groups: list[str]) -> list[str]:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from prunus.errors import PrunusError
+from prunus.errors import NoTreeError, PrunusError
 from prunus.measure import remarks
 from prunus.model import Floats, PointCloud, ScoredGraph, SeededGraph, Skeleton
-from prunus.params import Parameters
+from prunus.model.arrays import frozen
+from prunus.params import Parameters, checked_params, checked_seed
+from prunus.plausible import Evidence
 from prunus.result import Result, Seconds, timed
 from prunus.search import (
     SearchResult,
@@ -20,10 +24,11 @@ from prunus.search import (
     shipped_score,
     skel_score,
 )
+from prunus.sensing.diagnosis import explaining
 from prunus.sensing.isolate import Isolated, Scene, isolate, judged_graph
 from prunus.sensing.trunks import find_foot
 from prunus.stages.candidates import find_candidates
-from prunus.stages.confidence import EdgeScorer, hopeful, score_edges
+from prunus.stages.confidence import EdgeScorer, check_scorer, hopeful, score_edges
 from prunus.stages.networks import NetworkScorer
 from prunus.stages.seeds import find_seeds, near_to
 from prunus.stages.sidebranches import find_side_branches
@@ -34,7 +39,7 @@ from prunus.stages.superpoints import find_superpoints
 def skeletonize(
     cloud: PointCloud | ArrayLike,
     base: ArrayLike | None = None,
-    params: Parameters | None = None,
+    params: Parameters | Mapping[str, Any] | None = None,
     seed: int = 0,
     scorer: EdgeScorer | None = None,
 ) -> Result:
@@ -42,17 +47,33 @@ def skeletonize(
 
     cloud: points (P, 3) in metres, Z up and X along the row; for another frame a `PointCloud`.
     base: a point (3,) where the trunk meets the ground, in the frame of the input; None finds it.
+    params: also as nested dicts. scorer: your own, which has to keep to its range.
     Same input, parameters and seed give the same skeleton, bit for bit.
-    Raises PrunusError where the cloud holds no tree that can be followed.
+    Raises PrunusError naming the argument that is wrong; NoTreeError where the cloud holds no tree
+    that can be followed, with the reason and what to try.
     """
     cloud = cloud if isinstance(cloud, PointCloud) else PointCloud.from_xyz(cloud)
+    with explaining(cloud):
+        return _judged(follow(cloud, base, params, seed, scorer))
+
+
+def follow(
+    cloud: PointCloud,
+    base: ArrayLike | None = None,
+    params: Parameters | Mapping[str, Any] | None = None,
+    seed: int = 0,
+    scorer: EdgeScorer | None = None,
+) -> Result:
+    """What `skeletonize` finds, tree or not: for experiments, which count the failures too."""
     at = None if base is None else cloud.to_input.inverse().apply(_point(base))
-    params = params or Parameters()
+    params, seed = checked_params(params), checked_seed(seed)
+    if scorer is None:
+        scorer = NetworkScorer.shipped(params.confidence.edge_net)
+    check_scorer(scorer)
     rng = np.random.default_rng(seed)
     seconds: Seconds = {}
 
-    scorer = scorer or NetworkScorer.shipped(params.confidence.edge_net)
-    scan, notes = cloud, list[str]()
+    scan, notes, doubts = cloud, list[str](), list[str]()
     scored = _scored(cloud, scorer, params, rng, seconds)
     with timed(seconds, "isolate"):
         isolated = _isolated(cloud, scored, scorer, at, params, rng)
@@ -60,6 +81,7 @@ def skeletonize(
         cloud = cloud.take(isolated.target)
         scored = _scored(cloud, scorer, params, rng, seconds)
         notes.append(isolated.told())
+        doubts += isolated.doubts()
     with timed(seconds, "seeds"):
         foot = None if at is not None else isolated.foot if isolated else find_foot(cloud, scored)
         hoped = hopeful(scored, scorer, params.confidence)
@@ -72,12 +94,27 @@ def skeletonize(
         notes.append(f"{scorer.name} tells no categories: the paper's score was taken")
     found = best_skeleton(seeded, params, rng, seconds)
     with timed(seconds, "measures"):
-        warnings += remarks(found.skeleton, seeded, for_tips=not learned)
+        warnings += [*doubts, *remarks(found.skeleton, seeded, for_tips=not learned)]
     skeleton = found.skeleton if foot is None else _standing_at(foot, found.skeleton)
     return Result(
         skeleton, seeded, found.score, found.history, seconds, params, seed, warnings,
         notes, scan, isolated,
     )  # fmt: skip
+
+
+def _judged(result: Result) -> Result:
+    """The result with what is doubtful about it; NoTreeError where it is no tree."""
+    evidence = Evidence.of(result)
+    try:
+        evidence.check()
+    except NoTreeError as error:
+        if result.isolated is None:
+            raise
+        raise NoTreeError(
+            f"{error}; {result.isolated.removed:.0%} of the scan was left out as no part of this "
+            "tree (--no-isolate keeps it, --base says where the tree stands)"
+        ) from error
+    return replace(result, warnings=[*evidence.doubts(), *result.warnings])
 
 
 def _scored(
@@ -121,7 +158,8 @@ def _isolated(
     raw = some.removed >= params.isolation.raw_from and some.target.mean() >= LEAST_LEFT
     if not raw and wanted != "always":
         return None
-    return replace(drawn.over(cloud).tree_at(some.base), rival=some.rival)
+    found = drawn.over(cloud).tree_at(some.base)
+    return replace(found, rival=some.rival, torn=drawn.torn(some))
 
 
 LEAST_LEFT = 0.02
@@ -163,10 +201,7 @@ def _as_in_the_paper(
 
 
 def _point(base: ArrayLike) -> Floats:
-    try:
-        point = np.asarray(base, np.float64)
-    except (TypeError, ValueError):
-        point = np.zeros(0)
-    if point.shape != (3,) or not np.isfinite(point).all():
-        raise PrunusError(f"the base is {base!r}; expected three finite numbers x, y, z")
+    point = frozen(base, np.float64, (3,), "base")
+    if not np.isfinite(point).all():
+        raise PrunusError(f"base: {point}; expected three finite numbers x, y, z")
     return point

@@ -10,10 +10,11 @@ from functools import cached_property
 
 import numpy as np
 
+from prunus.measure import branches
 from prunus.measure.refine import Refined, refined
 from prunus.measure.trust import Known, Trust, trust_in
 from prunus.measure.trust.review import review_of
-from prunus.model import Floats, PointCloud, SeededGraph, Skeleton
+from prunus.model import Floats, Label, PointCloud, SeededGraph, Skeleton
 from prunus.params import Parameters
 from prunus.search import goes_by_learned_score, shipped_score
 from prunus.search.judged import judged
@@ -56,10 +57,19 @@ class Result:
     scan: PointCloud
     isolated: Isolated | None
 
+    def __repr__(self) -> str:
+        leaders, sides = (
+            len(branches(self.in_house, label)) for label in (Label.LEADER, Label.SIDE_BRANCH)
+        )
+        trust = "unknown" if self.trust is None else f"{self.trust.tree:.2f}"
+        return f"Result({leaders} leaders, {sides} side branches, trust {trust})"
+
     @cached_property
     def skeleton(self) -> Skeleton:
-        """The skeleton in the frame of the input."""
-        return self.in_house.moved(self.graph.superpoints.cloud.to_input)
+        """The skeleton in the frame of the input, with the radii of the refined one."""
+        radius = self.refined.radius_at(self.in_house.superpoint)
+        back = self.graph.superpoints.cloud.to_input
+        return self.in_house.with_radius(radius).moved(back)
 
     @cached_property
     def tree_cloud(self) -> PointCloud:

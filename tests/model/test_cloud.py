@@ -35,9 +35,9 @@ def test_a_sample_is_some_of_the_points_each_once(rng: np.random.Generator) -> N
     ("xyz", "message"),
     [
         (np.zeros((0, 3)), "holds no points"),
-        (np.zeros((4, 2)), r"shape \(4, 2\); expected \(P, 3\)"),
+        (np.zeros((4, 2)), r"shape \(4, 2\); expected \(N, 3\)"),
         ([[0, 0, np.nan], [0, 0, np.inf], [1, 1, 1]], "2 of 3 points hold NaN or infinity"),
-        ([["a", "b", "c"]], "not an array of numbers"),
+        ([["a", "b", "c"]], "the cloud: text; expected numbers"),
     ],
 )
 def test_bad_points_are_refused(xyz: object, message: str) -> None:

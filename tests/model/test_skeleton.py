@@ -1,5 +1,8 @@
 """A skeleton is a tree by construction, frozen, and a change is a new value."""
 
+from pathlib import Path
+
+import networkx
 import numpy as np
 import pytest
 
@@ -34,7 +37,7 @@ def test_no_nodes_unknown_labels_and_nan_are_refused() -> None:
         Skeleton.build(np.zeros((1, 3)), [-1], [7])
     with pytest.raises(ValueError, match="NaN or infinity"):
         Skeleton.build([[0, 0, np.nan]], [-1], [0])
-    with pytest.raises(ValueError, match="expected an array of shape"):
+    with pytest.raises(ValueError, match=r"parent: shape \(1,\); expected \(2,\)"):
         Skeleton.build(np.zeros((2, 3)), [-1], [0, 0])
 
 
@@ -61,7 +64,13 @@ def test_networkx_holds_every_column() -> None:
     assert graph.number_of_edges() == len(skeleton) - 1
     words = [data["label"] for _, _, data in graph.edges(data=True)]
     assert words.count("leader") == skeleton.edges_with(Label.LEADER).sum()
-    assert graph.nodes[0]["xyz"] == tuple(skeleton.xyz[0])
+    assert [graph.nodes[0][axis] for axis in "xyz"] == skeleton.xyz[0].tolist()
+
+
+def test_networkx_writes_it_as_graphml(tmp_path: Path) -> None:
+    graph = tree().to_networkx()
+    networkx.write_graphml(graph, tmp_path / "tree.graphml")
+    assert networkx.read_graphml(tmp_path / "tree.graphml").number_of_nodes() == len(graph)
 
 
 def test_words_and_labels_name_each_other() -> None:

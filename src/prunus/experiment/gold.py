@@ -30,7 +30,7 @@ from prunus.io.skeletons import Point, read_record
 from prunus.learn.labelled import labelled_graphs
 from prunus.model import PointCloud, Skeleton
 from prunus.params import Parameters
-from prunus.pipeline import skeletonize
+from prunus.pipeline import follow
 
 STEP = 0.02
 """The corrected skeleton is given a node every so many metres, as true trees have them."""
@@ -138,7 +138,7 @@ def _tree(subject: Corrected) -> Tree:
 
 def _isolated(cloud: PointCloud, base: Point | None, params: Parameters, seed: int) -> PointCloud:
     """The points that the chain took for the tree, and nobody said otherwise."""
-    isolated = skeletonize(cloud, base, params, seed).isolated
+    isolated = follow(cloud, base, params, seed).isolated
     return cloud if isolated is None else cloud.take(isolated.target)
 
 

@@ -17,7 +17,7 @@ from prunus.io.tables import without_nan
 from prunus.measure import shown
 from prunus.model import Label, Skeleton
 from prunus.params import Parameters
-from prunus.pipeline import skeletonize
+from prunus.pipeline import follow
 from prunus.result import Result
 from prunus.search import learned_score_of, shipped_score, skel_score
 
@@ -97,7 +97,7 @@ def trial(tree: Tree, draw: int, way: Way) -> Record:
     base = tree.truth.xyz[0] if way.base else None
     scorer = OracleScorer(tree) if way.oracle else None
     cpu = time.process_time()
-    result = skeletonize(cloud, base, way.params, draw, scorer)
+    result = follow(cloud, base, way.params, draw, scorer)
     cpu = time.process_time() - cpu
     return {
         "tree": tree.name,

@@ -119,8 +119,6 @@ def write_graphml(path: str | Path, skeleton: Skeleton) -> None:
     import networkx as nx
 
     graph = skeleton.to_networkx()
-    for _, columns in graph.nodes(data=True):
-        columns |= dict(zip("xyz", columns.pop("xyz"), strict=True))
     for *_, columns in (*graph.nodes(data=True), *graph.edges(data=True)):
         for name in [name for name, value in columns.items() if value != value]:
             del columns[name]

@@ -3,7 +3,9 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
+
+from prunus.errors import PrunusError
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -14,16 +16,60 @@ GRID = 2.0**-20
 """Coordinates are held on a grid of about a micrometre (metres). See `snapped`."""
 
 
-def frozen(values: ArrayLike, dtype: Any, shape: tuple[int | None, ...]) -> NDArray[Any]:
-    """A read-only array of that type and shape (None = any length); ValueError otherwise."""
-    array = np.array(values, dtype=dtype)
-    fits = array.ndim == len(shape) and all(
-        want is None or want == got for want, got in zip(shape, array.shape, strict=False)
+Shape = tuple[int | None, ...]
+"""Lengths of an array; None = any."""
+
+
+def frozen(values: Any, dtype: Any, shape: Shape, name: str = "array") -> NDArray[Any]:
+    """A read-only array of that type and shape.
+
+    Lists, tables and tensors will do. Raises PrunusError naming it where it is none, where it holds
+    masked values, or others than that type can hold: nothing is rounded, cut off or read from text.
+    """
+    if np.ma.is_masked(values):
+        raise PrunusError(f"{name}: holds masked values; expected an array without a mask")
+    try:
+        found = np.asarray(values)
+    except Exception as error:
+        # what another library's object raises here is its own affair: RuntimeError in torch
+        raise PrunusError(f"{name}: not an array of numbers: {error}") from error
+    if found.shape == (0,) and shape[:1] in ((None,), (0,)):
+        found = np.zeros([length or 0 for length in shape], dtype)
+    fits = found.ndim == len(shape) and all(
+        want is None or want == got for want, got in zip(shape, found.shape, strict=True)
     )
     if not fits:
-        raise ValueError(f"expected an array of shape {shape}, found {array.shape}")
+        raise PrunusError(f"{name}: shape {found.shape}; expected {_shown(shape)}")
+    array = _cast(found, np.dtype(dtype), name)
     array.setflags(write=False)
     return array
+
+
+KINDS = {"f": "numbers", "i": "integers", "u": "integers", "b": "true or false"}
+"""What an array of a kind is to hold."""
+OTHERS = {"U": "text", "S": "text", "V": "named columns", "O": "objects", "b": "truth values"}
+"""What else people give."""
+
+
+def _cast(found: NDArray[Any], wanted: np.dtype[Any], name: str) -> NDArray[Any]:
+    """A copy in another type that holds the same values, but for the last digits of floats."""
+    expected = f"expected {KINDS[wanted.kind]}"
+    held = {"f": "fiuO", "i": "iu", "u": "iu", "b": "b"}[wanted.kind]
+    if found.size and found.dtype.kind not in held:
+        raise PrunusError(f"{name}: {OTHERS.get(found.dtype.kind, found.dtype)}; {expected}")
+    try:
+        array = found.astype(wanted)
+    except (TypeError, ValueError) as error:
+        raise PrunusError(f"{name}: {error}; {expected}") from error
+    if wanted.kind in "iu" and found.dtype != wanted and not np.array_equal(array, found):
+        raise PrunusError(f"{name}: holds {found.min()} to {found.max()}; {expected} of {wanted}")
+    return array
+
+
+def _shown(shape: Shape) -> str:
+    """A shape as one writes it: (N, 3)."""
+    lengths = ["N" if length is None else str(length) for length in shape]
+    return f"({', '.join(lengths)}{',' * (len(shape) == 1)})"
 
 
 def cubes(xyz: Floats, side: float) -> Ints:

@@ -28,8 +28,12 @@ class RigidMotion:
     translation: Floats
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "rotation", frozen(self.rotation, np.float64, (3, 3)))
-        object.__setattr__(self, "translation", frozen(self.translation, np.float64, (3,)))
+        turn = frozen(self.rotation, np.float64, (3, 3), "rotation")
+        shift = frozen(self.translation, np.float64, (3,), "translation")
+        if not np.isfinite(shift).all():
+            raise PrunusError(f"translation: {shift}; expected finite numbers")
+        object.__setattr__(self, "rotation", turn)
+        object.__setattr__(self, "translation", shift)
 
     def apply(self, xyz: ArrayLike) -> Floats:
         """The points (..., 3) moved."""
@@ -53,9 +57,12 @@ class PointCloud:
     rgb: Bytes | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "xyz", frozen(self.xyz, np.float64, (None, 3)))
+        if not isinstance(self.to_input, RigidMotion):
+            raise PrunusError(f"to_input: {type(self.to_input).__name__}; expected a RigidMotion")
+        object.__setattr__(self, "xyz", _points(self.xyz))
         if self.rgb is not None:
-            object.__setattr__(self, "rgb", frozen(self.rgb, np.uint8, (len(self.xyz), 3)))
+            rgb = frozen(self.rgb, np.uint8, (len(self.xyz), 3), "rgb")
+            object.__setattr__(self, "rgb", rgb)
 
     def __len__(self) -> int:
         return len(self.xyz)
@@ -65,8 +72,8 @@ class PointCloud:
         cls,
         xyz: ArrayLike,
         frame: str = "z-up",
-        rgb: Bytes | None = None,
-        turn: Floats | None = None,
+        rgb: ArrayLike | None = None,
+        turn: ArrayLike | None = None,
     ) -> PointCloud:
         """A cloud from points (P, 3), metres, in a named frame (see `FRAMES`).
 
@@ -74,16 +81,20 @@ class PointCloud:
 
         The points are turned into the house frame and shifted to a local origin in double
         precision, so that large coordinates (UTM) keep their millimetres.
-        Raises PrunusError on an unknown frame, a wrong shape, no points, NaN or infinity.
+        Raises PrunusError on an unknown frame, a wrong shape, no points, NaN or infinity, colours
+        that are not whole numbers from 0 to 255, or a turn that is no rotation.
         """
-        points = _checked(xyz)
-        if frame not in FRAMES:
+        points = _points(xyz)
+        if len(points) == 0:
+            raise PrunusError("the cloud holds no points; expected at least one")
+        if not isinstance(frame, str) or frame not in FRAMES:
             raise PrunusError(f"unknown frame {frame!r}; expected one of {sorted(FRAMES)}")
-        rotation = FRAMES[frame] if turn is None else turn @ FRAMES[frame]
+        rotation = FRAMES[frame] if turn is None else _rotation(turn) @ FRAMES[frame]
         turned = points @ rotation.T
         middle = (turned.min(axis=0) + turned.max(axis=0)) / 2
         back = RigidMotion(rotation, -middle).inverse()
-        return cls(snapped(turned - middle), back, rgb)
+        colours = None if rgb is None else frozen(rgb, np.uint8, points.shape, "rgb")
+        return cls(snapped(turned - middle), back, colours)
 
     def take(self, rows: Ints | Bools) -> PointCloud:
         """The cloud of these rows only, in the same frame."""
@@ -97,19 +108,27 @@ class PointCloud:
         return self.take(np.sort(rng.choice(len(self), count, replace=False, shuffle=False)))
 
 
-def _checked(xyz: ArrayLike) -> Floats:
-    try:
-        points = np.asarray(xyz, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise PrunusError(f"the cloud is not an array of numbers: {error}") from error
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise PrunusError(f"the cloud has shape {points.shape}; expected (P, 3)")
-    if len(points) == 0:
-        raise PrunusError("the cloud holds no points; expected at least one")
+def _points(xyz: ArrayLike) -> Floats:
+    """Points (P, 3) that can be reckoned with."""
+    points = frozen(xyz, np.float64, (None, 3), "the cloud")
     bad = ~np.isfinite(points).all(axis=1)
     if bad.any():
         raise PrunusError(
             f"{bad.sum()} of {len(points)} points hold NaN or infinity "
             f"(the first is point {int(bad.argmax())}); expected finite coordinates"
         )
+    far = np.abs(points).max(initial=0.0)
+    if far > FARTHEST_M:
+        raise PrunusError(f"the cloud has a coordinate of {far:.3g} m; expected metres on Earth")
     return points
+
+
+FARTHEST_M = 1e9
+"""No coordinate is larger: that of a projection on Earth is 1e7, and 1e9 still has micrometres."""
+
+
+def _rotation(turn: ArrayLike) -> Floats:
+    matrix = frozen(turn, np.float64, (3, 3), "turn")
+    if not np.allclose(matrix @ matrix.T, np.eye(3), atol=1e-6) or np.linalg.det(matrix) < 0:
+        raise PrunusError("turn: no rotation; expected an orthonormal matrix (3, 3)")
+    return matrix

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from prunus.errors import PrunusError
 from prunus.model.arrays import Bools, Floats, Ints, frozen
 from prunus.model.cloud import RigidMotion
 
@@ -31,13 +32,11 @@ class Label(IntEnum):
 
     @classmethod
     def from_word(cls, word: str) -> Label:
-        """The label of that name; ValueError for any other word."""
-        try:
-            return cls[word.upper()]
-        except KeyError:
-            raise ValueError(
-                f"unknown label {word!r}; expected one of {[x.word for x in cls]}"
-            ) from None
+        """The label of that name; PrunusError for any other word."""
+        label = cls.__members__.get(str(word).upper())
+        if label is None:
+            raise PrunusError(f"unknown label {word!r}; expected one of {[x.word for x in cls]}")
+        return label
 
 
 def parents_first(base: int, before: dict[int, int]) -> tuple[list[int], list[int]]:
@@ -54,6 +53,20 @@ def parents_first(base: int, before: dict[int, int]) -> tuple[list[int], list[in
             nodes.append(child)
             parent.append(row)
     return nodes, parent
+
+
+COLUMNS: dict[str, type] = {
+    "parent": np.int64,
+    "label": np.int8,
+    "confidence": np.float64,
+    "radius": np.float64,
+    "superpoint": np.int64,
+}
+"""What a skeleton knows of each node beside its place."""
+
+
+def _column(name: str, values: ArrayLike, rows: int) -> NDArray[Any]:
+    return frozen(values, COLUMNS[name], (rows,), name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,30 +94,26 @@ class Skeleton:
     superpoint: Ints
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "xyz", frozen(self.xyz, np.float64, (None, 3)))
-        size = (len(self.xyz),)
-        object.__setattr__(self, "parent", frozen(self.parent, np.int64, size))
-        object.__setattr__(self, "label", frozen(self.label, np.int8, size))
-        object.__setattr__(self, "confidence", frozen(self.confidence, np.float64, size))
-        object.__setattr__(self, "radius", frozen(self.radius, np.float64, size))
-        object.__setattr__(self, "superpoint", frozen(self.superpoint, np.int64, size))
+        object.__setattr__(self, "xyz", frozen(self.xyz, np.float64, (None, 3), "xyz"))
+        for name in COLUMNS:
+            object.__setattr__(self, name, _column(name, getattr(self, name), len(self.xyz)))
         self._check()
 
     def _check(self) -> None:
         if len(self) == 0:
-            raise ValueError("a skeleton has at least its base; found no nodes")
+            raise PrunusError("a skeleton has at least its base; found no nodes")
         if not np.isfinite(self.xyz).all():
-            raise ValueError("a skeleton's nodes are finite; found NaN or infinity")
+            raise PrunusError("a skeleton's nodes are finite; found NaN or infinity")
         rows = np.arange(len(self))
         bad = (self.parent >= rows) | (self.parent < np.where(rows == 0, -1, 0))
         if bad.any():
             row = int(bad.argmax())
-            raise ValueError(
+            raise PrunusError(
                 f"parent[{row}] is {self.parent[row]}; "
                 "expected -1 at row 0 and an earlier row elsewhere"
             )
         if not np.isin(self.label, [int(label) for label in Label]).all():
-            raise ValueError(f"labels are 0 to {max(Label)}; found {np.unique(self.label)}")
+            raise PrunusError(f"labels are 0 to {max(Label)}; found {np.unique(self.label)}")
 
     @classmethod
     def build(
@@ -117,16 +126,19 @@ class Skeleton:
         radius: ArrayLike | None = None,
         superpoint: ArrayLike | None = None,
     ) -> Skeleton:
-        """A skeleton from its columns; what is not given is unknown."""
-        rows = len(np.asarray(xyz))
-        unknown = np.full(rows, np.nan)
+        """A skeleton from its columns; what is not given is unknown.
+
+        Raises PrunusError naming the column that is of a wrong shape or kind.
+        """
+        nodes = frozen(xyz, np.float64, (None, 3), "xyz")
+        rows, unknown = len(nodes), np.full(len(nodes), np.nan)
         return cls(
-            np.asarray(xyz, np.float64),
-            np.asarray(parent, np.int64),
-            np.asarray(label, np.int8),
-            unknown if confidence is None else np.asarray(confidence, np.float64),
-            unknown if radius is None else np.asarray(radius, np.float64),
-            np.full(rows, -1) if superpoint is None else np.asarray(superpoint, np.int64),
+            nodes,
+            _column("parent", parent, rows),
+            _column("label", label, rows),
+            unknown if confidence is None else _column("confidence", confidence, rows),
+            unknown if radius is None else _column("radius", radius, rows),
+            np.full(rows, -1) if superpoint is None else _column("superpoint", superpoint, rows),
         )
 
     def __len__(self) -> int:
@@ -157,7 +169,7 @@ class Skeleton:
 
     def with_radius(self, radius: ArrayLike) -> Skeleton:
         """The same skeleton with other radii (M,)."""
-        return replace(self, radius=np.asarray(radius, np.float64))
+        return replace(self, radius=_column("radius", radius, len(self)))
 
     def part(self, kept: Bools) -> Skeleton:
         """The tree of these rows (M,), whose parents are among them save that of the first."""
@@ -180,18 +192,19 @@ class Skeleton:
     def to_networkx(self) -> networkx.DiGraph[int]:
         """A networkx DiGraph, parent -> child.
 
-        Nodes carry `xyz`, `radius` and `superpoint`; edges `label` (word), `confidence`, `length`.
+        Nodes carry `x`, `y`, `z`, `radius` and `superpoint`; edges `label` (word), `confidence`,
+        `length`: words and numbers, which every writer of networkx takes.
         """
         import networkx as nx
 
         graph: Any = nx.DiGraph()
         for row in range(len(self)):
+            x, y, z = self.xyz[row].tolist()
             graph.add_node(
-                row,
-                xyz=tuple(self.xyz[row].tolist()),
+                row, x=x, y=y, z=z,
                 radius=float(self.radius[row]),
                 superpoint=int(self.superpoint[row]),
-            )
+            )  # fmt: skip
         for row in range(1, len(self)):
             graph.add_edge(
                 int(self.parent[row]),

@@ -4,17 +4,30 @@ from __future__ import annotations
 
 import numpy as np
 
+from prunus.errors import PrunusError
 from prunus.kernels.paths import tip_paths
 from prunus.kernels.tables import GraphTable, PriorTable
 from prunus.model import Floats, Ints
+
+MOST_BYTES = 4 * 2**30
+"""A table of ways larger than this is none that a machine should be asked for."""
 
 
 def path_priors(
     graph: GraphTable, score: Floats, cost: Floats, base: int, tips: Ints
 ) -> PriorTable:
-    """One Dijkstra a tip over the directed edges (eq. Cost); see `kernels.paths.tip_paths`."""
+    """One Dijkstra a tip over the directed edges (eq. Cost); see `kernels.paths.tip_paths`.
+
+    Raises PrunusError where the ways of all tips would not fit into memory.
+    """
     D, T = len(graph.tail), len(tips)
     words = (len(graph.out_start) - 1 + 63) // 64
+    size = T * D * 8 * (words + 3)
+    if size > MOST_BYTES:
+        raise PrunusError(
+            f"the ways to {T} tips over {D // 2} edges take {size / 2**30:.0f} GB; expected at "
+            f"most {MOST_BYTES / 2**30:.0f} GB: fewer tips or edges (one tree alone)"
+        )
     priors = PriorTable(
         np.full((T, D, words), ~np.uint64(0)),
         np.zeros((T, D)),

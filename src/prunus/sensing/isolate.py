@@ -11,7 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from prunus.errors import PrunusError
+from prunus.errors import NoTreeError, PrunusError
+from prunus.kernels.forest import components
 from prunus.kernels.neighbours import nearest
 from prunus.model import Bools, Floats, Ints, Kind, PointCloud, ScoredGraph
 from prunus.params import Parameters
@@ -20,6 +21,7 @@ from prunus.sensing.trunks import Trunk, find_trunks, foot_of
 from prunus.stages.candidates import find_candidates
 from prunus.stages.confidence import score_edges
 from prunus.stages.networks import WEIGHTS, NetworkScorer, open_network
+from prunus.stages.seeds import WEEDS_M
 from prunus.stages.superpoints import find_superpoints
 
 NETWORK = WEIGHTS / "isolate.onnx"
@@ -41,6 +43,9 @@ CLOSE = 0.5
 """A tree so little farther aside, metres, could be meant as well."""
 SNAPS = 0.25
 """A point given by hand means the trunk within so many metres."""
+JOINS, TORN = 0.95, 0.4
+"""Edges of this confidence join wood; so many superpoints torn off, for each of the tree, are many:
+trees that were taken apart had 0.5 to 2, of 14 rows of trees all but two under 0.3."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,13 +53,15 @@ class Isolated:
     """What each point (P,) of a scan is to one tree (`model.Kind`), and where that stands.
 
     `base` (3,), house frame, is where the network looked from; `foot` (3,) the lowest point of the
-    trunk that the scan holds; `rival` (3,) the foot of another tree that could be meant as well.
+    trunk that the scan holds; `rival` (3,) the foot of another tree that could be meant as well;
+    `torn`: how many superpoints were left out that hang on the tree by sure edges, for each of it.
     """
 
     kind: Ints
     base: Floats
     foot: Floats
     rival: Floats | None = None
+    torn: float = 0.0
 
     @property
     def target(self) -> Bools:
@@ -66,6 +73,15 @@ class Isolated:
         """The share of the points, strays apart, that are not the tree."""
         counted = self.kind != Kind.STRAY
         return float(1 - self.target.sum() / max(counted.sum(), 1))
+
+    def doubts(self) -> list[str]:
+        """Why it may not be the tree, or not all of it."""
+        if self.torn < TORN:
+            return []
+        return [
+            f"{self.removed:.0%} of the scan was left out, though much of that hangs on the tree: "
+            "is it all one tree (see --no-isolate)?"
+        ]
 
     def told(self) -> str:
         """What was taken out, in a line."""
@@ -150,6 +166,17 @@ class Scene:
         """What each point is to the tree with that base (3,)."""
         return self._isolated(self._likely(base), base)
 
+    def torn(self, tree: Isolated) -> float:
+        """How many superpoints were left out that sure edges join to a tree, for each of it."""
+        kind = np.full(len(self.pieces.xyz), int(Kind.STRAY))
+        kind[self.owner[self.owner >= 0]] = tree.kind[self.owner >= 0]
+        own = kind == Kind.TARGET
+        if not own.any():
+            return 0.0
+        piece = components(len(kind), self.pieces.edges[self.pieces.confidence >= JOINS])
+        joined = piece == np.bincount(piece[own]).argmax()
+        return float((joined & ~own & (kind != Kind.GROUND)).sum() / own.sum())
+
     def _likely(self, base: Floats) -> Floats:
         """The probability (N, kinds) of what each superpoint is to a tree."""
         seen = self.pieces.seen_from(base)
@@ -182,13 +209,17 @@ def isolate(scene: Scene, at: Floats | None) -> Isolated:
     if at is None:
         if scene.trees:
             return replace(scene.tree_at(scene.trees[0].base), rival=scene.rival)
-        raise PrunusError(
-            "no trunk was found in the scan; expected one in view, Z up and in metres "
-            "(or say where the tree stands: --at X Y Z)"
-        )
-    beside = [float(np.linalg.norm(trunk.base - at)) for trunk in scene.trunks]
+        raise NoTreeError("no trunk was found in the scan (--at X Y Z says where a tree stands)")
+    beside = [_beside(trunk.base, at) for trunk in scene.trunks]
     meant = beside and min(beside) <= SNAPS
     return scene.tree_at(scene.trunks[int(np.argmin(beside))].base if meant else at)
+
+
+def _beside(base: Floats, at: Floats) -> float:
+    """How far a point is from a trunk, metres; weeds may hide the foot above it."""
+    away = base - at
+    away[2] -= np.clip(away[2], 0, WEEDS_M)
+    return float(np.linalg.norm(away))
 
 
 def check_at(scene: Scene, at: Floats) -> None:
@@ -199,5 +230,5 @@ def check_at(scene: Scene, at: Floats) -> None:
         raise PrunusError(
             f"the point given is {distance.min():.2f} m from the nearest part of the scan, "
             f"({near[0]:.2f}, {near[1]:.2f}, {near[2]:.2f}); expected at most {AT_REACH:.2f} m "
-            "(it is in the frame and unit of the input file)"
+            "(it is in metres, in the frame of the input file)"
         )

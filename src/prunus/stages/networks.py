@@ -39,6 +39,11 @@ class NetworkScorer:
     name: str = "cnn"
     floor: float = 0.30
 
+    def __post_init__(self) -> None:
+        if not isinstance(self.path, str | Path):
+            raise PrunusError(f"network: {self.path!r}; expected the name of an ONNX file")
+        object.__setattr__(self, "path", Path(self.path))
+
     @classmethod
     def shipped(cls, edge_net: str) -> NetworkScorer:
         """The network that the package ships under that name: paper or ours."""
@@ -61,9 +66,13 @@ class NetworkScorer:
         if len(candidates.edges) == 0:
             return np.zeros(0), np.zeros((0, 5))
         session = open_network(self.path, SHOWN, TOLD)
-        wanted = [one.name for one in session.get_inputs()]
-        confidence, category = session.run(["confidence", "category"], _shown(candidates, wanted))
-        return np.asarray(confidence, np.float64), np.asarray(category, np.float64)
+        shown = _shown(candidates, [one.name for one in session.get_inputs()])
+        try:
+            told = session.run(["confidence", "category"], shown)
+        except Exception as error:
+            # the errors of onnxruntime share no class, and what they are depends on the network
+            raise PrunusError(f"{self.path}: {_not_ours(error)}") from error
+        return told[0], told[1]
 
 
 def _shown(candidates: CandidateGraph, wanted: list[str]) -> dict[str, Any]:
@@ -81,19 +90,18 @@ def open_network(path: Path, inputs: tuple[frozenset[str], ...], outputs: frozen
     Raises PrunusError where the file holds none.
     """
     import onnxruntime
-    from onnxruntime.capi import onnxruntime_pybind11_state as errors
 
-    damage = (errors.Fail, errors.InvalidArgument, errors.InvalidGraph, errors.InvalidProtobuf)
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
-    options.log_severity_level = 3
+    options.log_severity_level = 4
     try:
         session = onnxruntime.InferenceSession(
             path.read_bytes(), options, providers=["CPUExecutionProvider"]
         )
     except OSError as error:
         raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
-    except damage as error:
+    except Exception as error:
+        # the errors of onnxruntime share no class, and a damaged file may raise any of them
         raise PrunusError(f"{path}: not an ONNX file ({type(error).__name__})") from error
     names = {one.name for one in session.get_inputs()}
     found = {one.name for one in session.get_outputs()}
@@ -103,3 +111,10 @@ def open_network(path: Path, inputs: tuple[frozenset[str], ...], outputs: frozen
             "expected one that `prunus train` made"
         )
     return session
+
+
+def _not_ours(error: Exception) -> str:
+    return (
+        f"the network does not take what it is shown ({type(error).__name__}); "
+        "expected one that `prunus train` of this version made"
+    )

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from prunus.errors import PrunusError
+from prunus.errors import NoTreeError, PrunusError
 from prunus.kernels.angles import grow_angle
 from prunus.kernels.forest import components, spanning_forest
-from prunus.model import Bools, Floats, Ints, ScoredGraph, SeededGraph
+from prunus.model import FRAMES, Bools, Floats, Ints, Label, ScoredGraph, SeededGraph
 from prunus.params import Parameters
 
 STEEP = np.pi / 4
@@ -16,6 +16,16 @@ STEEP = np.pi / 4
 
 BASE_REACH = 2.0
 """A base given by hand lies within this many r_super of a superpoint."""
+WEEDS_M = 0.50
+"""Or straight below the foot of a trunk, which weeds may hide for so many metres."""
+SURE = 0.30
+"""Edges of this confidence are wood."""
+FOOT_SHARE = 0.35
+"""Wood at a foot is likely trunk, or the support that it bends into, by so much."""
+ABOVE_M = 0.30
+"""A base so far above the lowest wood of its tree is worth a remark, metres."""
+UNITS = {"millimetres": 1e-3, "centimetres": 1e-2, "feet": 0.3048}
+"""In which a base may have been given by mistake, in metres."""
 
 
 def find_seeds(
@@ -26,23 +36,22 @@ def find_seeds(
     `base` (3,) is a point of the house frame picked by hand; None finds one. Raises PrunusError
     where the base is far from every superpoint, or no tip is found.
     """
-    warnings: list[str] = []
     if base is None:
         root = lowest_of_largest(scored, params.confidence.alpha_conf)
-        warnings.append(
+        warnings = [
             "no base was given: the lowest superpoint of the largest connected piece was taken"
-        )
+        ]
     else:
-        root = nearest_superpoint(scored, np.asarray(base, np.float64))
+        root, warnings = superpoint_at(scored, np.asarray(base, np.float64))
     tips = find_tips(scored.xyz, scored.edges, scored.confidence, params)
     tips = tips[tips != root]
     if len(tips) == 0:
-        raise PrunusError(
+        raise NoTreeError(
             "no tips of leaders were found: no upright edge of confidence "
             f"{params.confidence.alpha_conf:g} in the upper {params.tips.alpha_tip:.0%} of the "
-            "cloud; expected a standing tree, Z up (see the frame) and in metres"
+            "cloud"
         )
-    return SeededGraph(scored, root, tips), warnings
+    return SeededGraph(scored, root, tips), [*warnings, *doubts_of_base(scored, root)]
 
 
 def find_tips(xyz: Floats, edges: Ints, confidence: Floats, params: Parameters) -> Ints:
@@ -65,20 +74,88 @@ def find_tips(xyz: Floats, edges: Ints, confidence: Floats, params: Parameters) 
     return np.sort(ordered[first])
 
 
-def nearest_superpoint(scored: ScoredGraph, point: Floats) -> int:
-    """The superpoint nearest to a base picked by hand, one with an edge where there is one."""
+def superpoint_at(scored: ScoredGraph, point: Floats) -> tuple[int, list[str]]:
+    """The superpoint at a base picked by hand, and a remark where it is not quite there.
+
+    That is the nearest, one with an edge where there is one; or the foot of a trunk above it.
+    Raises PrunusError where there is none.
+    """
     distance = np.linalg.norm(scored.xyz - point, axis=1)
     reach = BASE_REACH * scored.candidates.superpoints.radius
-    if distance.min() > reach:
-        cloud = scored.candidates.superpoints.cloud
-        near = cloud.to_input.apply(scored.xyz[distance.argmin()])
+    if distance.min() <= reach:
+        joined = np.isin(np.arange(len(distance)), scored.edges) & (distance <= reach)
+        return int(np.where(joined, distance, distance + reach).argmin()), []
+    foot = foot_above(scored, point)
+    cloud = scored.candidates.superpoints.cloud
+    shown = _shown(cloud.to_input.apply(point))
+    if foot is None:
+        near = _shown(cloud.to_input.apply(scored.xyz[distance.argmin()]))
         raise PrunusError(
-            f"the base {_shown(cloud.to_input.apply(point))} is {distance.min():.2f} m from the "
-            f"nearest part of the tree, {_shown(near)}; expected at most {reach:.2f} m "
-            "(the base is in the frame and unit of the input file)"
+            f"the base {shown} is {distance.min():.2f} m from the nearest part of the tree, "
+            f"{near}; expected at most {reach:.2f} m{_mistaken(scored, point, reach)}"
         )
-    joined = np.isin(np.arange(len(distance)), scored.edges) & (distance <= reach)
-    return int(np.where(joined, distance, distance + reach).argmin())
+    below = scored.xyz[foot, 2] - point[2]
+    return foot, [
+        f"the base {shown} is {below:.2f} m below the lowest wood in view above it: weeds may hide "
+        "the foot of the trunk"
+    ]
+
+
+def foot_above(scored: ScoredGraph, point: Floats) -> int | None:
+    """The lowest superpoint that may be a foot, straight above a point (3,); None where none is."""
+    away = scored.xyz - point
+    reach = BASE_REACH * scored.candidates.superpoints.radius
+    above = (np.linalg.norm(away[:, :2], axis=1) <= reach) & (away[:, 2] > 0)
+    found = np.flatnonzero(above & (away[:, 2] <= WEEDS_M) & (thickness(scored) >= FOOT_SHARE))
+    return int(found[away[found, 2].argmin()]) if len(found) else None
+
+
+def thickness(scored: ScoredGraph) -> Floats:
+    """How likely each superpoint (N,) is of trunk or support, by the sure edges that meet there.
+
+    Of a scorer that tells no categories: 1 where there is a sure edge.
+    """
+    sure = scored.confidence >= SURE
+    thick = np.ones(int(sure.sum()))
+    if scored.category.size:
+        thick = scored.category[sure][:, [Label.TRUNK, Label.SUPPORT]].sum(axis=1)
+    most = np.zeros(len(scored.xyz))
+    np.maximum.at(most, scored.edges[sure].T.ravel(), np.tile(thick, 2))
+    return most
+
+
+def doubts_of_base(scored: ScoredGraph, root: int) -> list[str]:
+    """Why a base may be none: no thick wood is about it, or its tree goes on far below."""
+    found = []
+    xyz, place = scored.xyz, scored.candidates.superpoints.cloud.to_input.apply
+    piece = components(len(xyz), scored.edges[scored.confidence >= SURE])
+    own = np.flatnonzero(piece == piece[root])
+    lowest = own[xyz[own, 2].argmin()]
+    above = float(xyz[root, 2] - xyz[lowest, 2])
+    if above > ABOVE_M:
+        found.append(
+            f"the base {_shown(place(xyz[root]))} is {above:.1f} m above the lowest wood of its "
+            f"tree, {_shown(place(xyz[lowest]))}"
+        )
+    about = np.linalg.norm(xyz - xyz[root], axis=1)
+    beside = about <= BASE_REACH * scored.candidates.superpoints.radius
+    if thickness(scored)[beside].max() < FOOT_SHARE:
+        found.append(f"the base {_shown(place(xyz[root]))} touches no trunk: thin wood is about it")
+    return found
+
+
+def _mistaken(scored: ScoredGraph, point: Floats, reach: float) -> str:
+    """In which unit or frame a base that is far from the tree would be near it, in words."""
+    to_file = scored.candidates.superpoints.cloud.to_input
+    given = to_file.apply(point)
+    meant = {f"in {unit}": given * metres for unit, metres in UNITS.items()}
+    for name, to_house in FRAMES.items():
+        meant[f"in the frame {name}"] = to_file.rotation @ to_house @ given
+    for words, place in meant.items():
+        away = np.linalg.norm(scored.xyz - to_file.inverse().apply(place), axis=1)
+        if away.min() <= reach:
+            return f": it seems to be given {words}; expected metres, in the frame of the file"
+    return " (the base is in metres, in the frame of the input file)"
 
 
 def near_to(scored: ScoredGraph, point: Floats) -> bool:

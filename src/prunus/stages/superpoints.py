@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.errors import PrunusError
+from prunus.errors import NoTreeError, PrunusError
 from prunus.kernels.axes import contract, cover_along
 from prunus.kernels.neighbours import cover, nearest, within
 from prunus.model import Floats, Ints, PointCloud, Superpoints
@@ -37,7 +37,7 @@ PARKED = 1.337
 def find_superpoints(cloud: PointCloud, params: Cover, rng: np.random.Generator) -> Superpoints:
     """Superpoints on the axes of branches, or the means of random balls; few points are noise.
 
-    Raises PrunusError where none holds `min_points`.
+    Raises PrunusError where none holds `min_points`, or they would be too many to work with.
     """
     axes = _drawn_together(cloud, rng)
     if params.place == "axes":
@@ -50,15 +50,39 @@ def find_superpoints(cloud: PointCloud, params: Cover, rng: np.random.Generator)
         xyz, size = cover(cloud.xyz, rng.permutation(len(cloud)), params.r_super)
     kept = xyz[size >= params.min_points]
     if len(kept) == 0:
-        raise PrunusError(
-            f"no superpoint holds {params.min_points} points (the fullest holds "
-            f"{size.max(initial=0)} of {len(cloud)}); expected a denser cloud, in metres"
+        raise NoTreeError(
+            f"no wood was found: nowhere do {params.min_points} of the {len(cloud)} points drawn "
+            "lie close together, as on a branch"
         )
+    _check_crowd(cloud, kept, params)
     start, members = within(cloud.xyz, kept, params.r_super)
     owner = nearest(axes.steps, kept, params.r_super)
     steps = np.bincount(owner[owner >= 0], minlength=len(kept))
     wood = np.asarray(PARKED * STEP * steps, np.float64)
     return Superpoints(cloud, kept, start, members, params.r_super, wood)
+
+
+def _check_crowd(cloud: PointCloud, superpoints: Floats, params: Cover) -> None:
+    """Raise PrunusError where points or edges of the superpoints (N, 3) would fill the memory."""
+    some = superpoints[:: max(1, len(superpoints) // LOOKED_AT)]
+    share = len(superpoints) / len(some)
+    for what, xyz, radius, most in (
+        ("points of superpoints", cloud.xyz, params.r_super, MOST_MEMBERS),
+        ("candidate edges", superpoints, 2 * params.r_super, MOST_EDGES),
+    ):
+        count = share * len(within(xyz, some, radius)[1])
+        if count > most:
+            raise PrunusError(
+                f"{len(superpoints)} superpoints of r_super {params.r_super:g} m make about "
+                f"{count:.0e} {what}; expected at most {most:.0e}: a smaller r_super, or fewer "
+                "superpoints (larger along and across)"
+            )
+
+
+LOOKED_AT = 200
+"""So many superpoints say how many points and edges all of them have, about."""
+MOST_MEMBERS, MOST_EDGES = 200_000_000, 1_000_000
+"""More are not worked with."""
 
 
 @dataclass(frozen=True, eq=False)
