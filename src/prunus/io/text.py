@@ -196,7 +196,7 @@ def _names(
 def _in_order(names: list[str], width: int) -> bool:
     """Whether names that are not one a column say what is taken anyway: x, y, z come first."""
     axes = axes_among(names, "")
-    return axes == [0, 1, 2] or (width == 3 and axes == [axes[0], axes[0] + 1, axes[0] + 2])
+    return axes == [0, 1, 2] or (width == 3 and axes == sorted(axes))
 
 
 def _rows(lines: list[str], layout: _Layout, path: Path) -> tuple[Floats, bool]:
@@ -235,7 +235,7 @@ def _without_remarks(body: str, separator: str | None) -> str:
 
 
 def _check_decimals(body: str, path: Path) -> None:
-    """That commas stand between numbers only, not within: no points, twice three columns or more."""
+    """That commas stand only between numbers: without any point, pairs of columns may be one."""
     first = body.partition("\n")[0]
     if "." not in body and first.count(",") >= 5 and first.count(",") % 2:
         raise PrunusError(
