@@ -64,6 +64,9 @@ class Unit(StrEnum):
     M = "m"
     CM = "cm"
     MM = "mm"
+    FT = "ft"
+    US_FT = "us-ft"
+    IN = "in"
 
 
 class ScanKind(StrEnum):

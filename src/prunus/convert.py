@@ -73,7 +73,7 @@ def convert_file(
         check_kind(target)
         held = read_cloud(source, unit)
         write_cloud(target, held.xyz, held.rgb)
-        return []
+        return held.notes
     kind = kind_of(target)
     for name, path in (("cloud", cloud), ("cuts", cuts)):
         if path is not None and kind != ".mcap":

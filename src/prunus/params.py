@@ -238,7 +238,7 @@ class Parameters(_Group):
     def from_toml(cls, path: str | Path) -> Parameters:
         """Parameters from a TOML file; what it does not name keeps its default."""
         try:
-            values = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+            values = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
         except OSError as error:
             raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
         except TypeError as error:

@@ -46,7 +46,7 @@ def test_pixels_of_a_pcd_that_saw_nothing_are_left_out_and_said(tmp_path: Path) 
     Pcd.from_xyz_points(holed).save(tmp_path / "c.pcd")
     cloud = read_cloud(tmp_path / "c.pcd")
     assert len(cloud.xyz) == 54
-    assert cloud.notes == ["6 of 60 pixels saw nothing (NaN) and were left out"]
+    assert cloud.notes == ["6 of 60 points are not finite (NaN) and were left out"]
 
 
 def test_pcd_colours_are_unpacked(tmp_path: Path) -> None:
@@ -125,8 +125,6 @@ GOOD = ply_bytes({"vertex": table_of({"x": XYZ[:, 0], "y": XYZ[:, 1], "z": XYZ[:
         ("text.xyz", b"1 2 3\n4 five 6\n", "five.*row 1|'five'"),
         ("ragged.xyz", b"1 2 3\n4 5\n", "number of columns changed"),
         ("two.csv", b"1,2\n3,4\n", "rows hold 2 numbers; expected x, y, z"),
-        ("nan.xyz", b"1 2 3\n4 nan 6\n7 8 9\n", r"1 of 3 points hold NaN .*the first is point 2\)"),
-        ("inf.xyz", b"1 2 3\n4 inf 6\n", "1 of 2 points hold NaN or infinity"),
         ("bad.pcd", b"# .PCD v0.7\nVERSION 0.7\n", "not a readable PCD file"),
         ("bad.las", b"LASF" + bytes(300), "not a readable LAS or LAZ file"),
         ("bad.npy", b"\x93NUMPY\x01\x00", "not a readable numpy file"),
@@ -147,7 +145,7 @@ def test_missing_files_and_folders_are_refused(tmp_path: Path) -> None:
     with pytest.raises(PrunusError, match=r"none.ply: cannot be read \(No such file"):
         read_cloud(tmp_path / "none.ply")
     (tmp_path / "folder.ply").mkdir()
-    with pytest.raises(PrunusError, match=r"folder.ply: cannot be read \(Is a directory"):
+    with pytest.raises(PrunusError, match=r"folder.ply: a folder of no cloud; expected one cloud"):
         read_cloud(tmp_path / "folder.ply")
 
 
@@ -168,13 +166,82 @@ def test_arrays_of_the_wrong_kind_are_refused(tmp_path: Path) -> None:
 def test_other_units_are_seen_refused_and_read_when_named(
     tmp_path: Path, unit: str, factor: float
 ) -> None:
-    write_cloud(tmp_path / "c.ply", XYZ * factor)
+    write_cloud(tmp_path / "c.xyz", XYZ * factor)
     with pytest.raises(PrunusError, match=f"say --unit {unit}"):
+        read_cloud(tmp_path / "c.xyz")
+    assert read_cloud(tmp_path / "c.xyz", unit).xyz == pytest.approx(XYZ)
+    assert read_cloud(tmp_path / "c.xyz", "m").xyz == pytest.approx(XYZ * factor)
+    with pytest.raises(PrunusError, match="unknown unit 'inch'; expected one of m, cm, mm, ft"):
+        read_cloud(tmp_path / "c.xyz", "inch")
+
+
+UNIT_LENGTHS = {
+    "m": 1,
+    "cm": 0.01,
+    "mm": 0.001,
+    "ft": 0.3048,
+    "us-ft": 0.3048006096012192,
+    "in": 0.0254,
+}
+
+
+@pytest.mark.parametrize(("unit", "length"), UNIT_LENGTHS.items())
+def test_every_unit_is_read_in_metres_and_said(tmp_path: Path, unit: str, length: float) -> None:
+    np.save(tmp_path / "c.npy", XYZ)
+    cloud = read_cloud(tmp_path / "c.npy", unit)
+    assert cloud.xyz == pytest.approx(XYZ * length, rel=1e-12)
+    assert cloud.unit == unit
+    said = [f"unit {unit} as asked: all that is written is in metres"]
+    assert cloud.notes == ([] if unit == "m" else said)
+
+
+@pytest.mark.parametrize(
+    ("comment", "length"),
+    [
+        ("unit: metre", 1), ("written by prunus; unit: metre", 1), ("unit: millimetre", 0.001),
+        ("unit: foot; frame: local", 0.3048), ("unit: US survey foot", 0.3048006096012192),
+        ("unit: furlong", 1), ("the unit is mm", 1),
+    ],
+)  # fmt: skip
+def test_the_comment_of_a_ply_tells_its_unit(tmp_path: Path, comment: str, length: float) -> None:
+    table = table_of(dict(zip("xyz", XYZ.T, strict=True)))
+    (tmp_path / "c.ply").write_bytes(ply_bytes({"vertex": table}, [comment]))
+    assert read_cloud(tmp_path / "c.ply").xyz == pytest.approx(XYZ * length, rel=1e-12)
+
+
+def test_a_unit_against_the_comment_of_a_ply_wins_and_is_said(tmp_path: Path) -> None:
+    write_cloud(tmp_path / "c.ply", XYZ * 1000)
+    with pytest.raises(PrunusError, match="the header tells m; it looks like millimetres"):
         read_cloud(tmp_path / "c.ply")
-    assert read_cloud(tmp_path / "c.ply", unit).xyz == pytest.approx(XYZ)
-    assert read_cloud(tmp_path / "c.ply", "m").xyz == pytest.approx(XYZ * factor)
-    with pytest.raises(PrunusError, match="unknown unit 'inch'"):
-        read_cloud(tmp_path / "c.ply", "inch")
+    cloud = read_cloud(tmp_path / "c.ply", "mm")
+    assert cloud.xyz == pytest.approx(XYZ)
+    assert cloud.notes == ["unit mm as asked, but the header tells m"]
+
+
+@pytest.mark.parametrize("name", ["tree", "tree.", "tree.gz", "tree.ply.zip", "tree.E58"])
+def test_a_file_without_a_known_ending_is_refused_in_words(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_bytes(b"1 2 3\n")
+    with pytest.raises(
+        PrunusError, match=f"{name}: (unknown kind|no ending).*expected one of .ply"
+    ):
+        read_cloud(tmp_path / name)
+
+
+@pytest.mark.parametrize("ending", [".PLY", ".XYZ", ".Csv", ".NPY"])
+def test_endings_in_capitals_are_the_same(tmp_path: Path, ending: str) -> None:
+    write_cloud(tmp_path / f"c{ending}", XYZ)
+    assert read_cloud(tmp_path / f"c{ending}").xyz == pytest.approx(XYZ)
+
+
+def test_a_folder_of_one_cloud_is_that_cloud(tmp_path: Path) -> None:
+    write_cloud(tmp_path / "trees" / "a.npy", XYZ)
+    (tmp_path / "trees" / "._a.npy").write_bytes(b"\0\5\x16\7")
+    (tmp_path / "trees" / "README.txt").write_text("Scanned in May 2024.\nBy hand.\n")
+    cloud = read_cloud(tmp_path / "trees")
+    assert (cloud.xyz == XYZ).all() and cloud.name == "a.npy"
+    write_cloud(tmp_path / "trees" / "b.xyz", XYZ)
+    with pytest.raises(PrunusError, match=r"trees: a folder of 2 clouds: a\.npy, b\.xyz; expected"):
+        read_cloud(tmp_path / "trees")
 
 
 def test_an_unknown_ending_is_not_written(tmp_path: Path) -> None:

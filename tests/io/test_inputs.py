@@ -1,5 +1,6 @@
 """What a path on the command line stands for, and what its outputs are called."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -116,3 +117,64 @@ def test_what_cannot_be_looked_at_is_a_plain_error() -> None:
     with pytest.raises(PrunusError, match=r"cannot be read \(File name too long\)"):
         source_of(Path("n" * 300 + ".ply"))
     assert not is_bag(Path("n" * 300)) and tree_in(Path("n" * 300)) is None
+
+
+@pytest.mark.parametrize(
+    "name", [".DS_Store", "._tree.ply", ".tree.ply", ".trash.mcap", ".Trashes/metadata.yaml",
+             "._bag/scan.ply", ".hidden.txt"],
+)  # fmt: skip
+def test_hidden_files_and_folders_are_no_scans(tmp_path: Path, name: str) -> None:
+    touched(tmp_path, name, "tree.ply")
+    touched(tmp_path, "._bag/trees.npz")
+    assert clouds_in(tmp_path) == [tmp_path / "tree.ply"]
+    assert source_of(tmp_path) == Source(tmp_path / "tree.ply")
+
+
+@pytest.mark.parametrize(
+    ("text", "scan"),
+    [
+        ("Scanned in May.\nBy hand, at 5 m.\n", False),
+        ("tree,variety\n1,Envy\n2,Gala\n", False),
+        ("tree,girth\n1,30.5\n", False),
+        ("1 2 3\n", True),
+        ("1;2;3\n", True),
+        ("1,5 2,5 3,5\n", True),
+        ("# exported\n//X Y Z\n", True),
+        ("x,y,z,class\n", True),
+        ("oak;1;2;3\n", False),
+        ("", True),
+    ],
+)
+@pytest.mark.parametrize("ending", [".txt", ".csv", ".asc"])
+def test_notes_and_tables_beside_scans_are_none(
+    tmp_path: Path, text: str, scan: bool, ending: str
+) -> None:
+    touched(tmp_path, "tree.ply")
+    (tmp_path / f"a{ending}").write_text(text)
+    assert (tmp_path / f"a{ending}" in clouds_in(tmp_path)) == scan
+
+
+def test_links_that_lead_nowhere_are_inputs_that_fail(tmp_path: Path) -> None:
+    touched(tmp_path, "tree.ply")
+    (tmp_path / "gone.ply").symlink_to(tmp_path / "none.ply")
+    (tmp_path / "loop.ply").symlink_to(tmp_path / "loop.ply")
+    (tmp_path / "round").symlink_to(tmp_path)
+    assert [path.name for path in clouds_in(tmp_path)] == ["gone.ply", "loop.ply", "tree.ply"]
+
+
+def test_what_is_no_file_is_no_input(tmp_path: Path) -> None:
+    touched(tmp_path, "tree.ply")
+    (tmp_path / "folder.ply").mkdir()
+    os.mkfifo(tmp_path / "pipe.ply")
+    assert clouds_in(tmp_path) == [tmp_path / "tree.ply"]
+
+
+def test_a_folder_of_one_bag_or_tree_stands_for_it(tmp_path: Path) -> None:
+    touched(
+        tmp_path, "row/rec/metadata.yaml", "trees/t0/scan.ply", "trees/t0/trees.npz", "two/a.ply"
+    )
+    touched(tmp_path, "two/b.ply", "none/notes.md")
+    assert source_of(tmp_path / "row") == Source(tmp_path / "row" / "rec")
+    assert source_of(tmp_path / "trees") == Source(tmp_path / "trees" / "t0" / "scan.ply")
+    for several in ("two", "none"):
+        assert source_of(tmp_path / several) == Source(tmp_path / several)

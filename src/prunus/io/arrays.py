@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import io
 import zipfile
-import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,18 +14,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from prunus.errors import PrunusError
-from prunus.io.safely import read_bytes, write_bytes
+from prunus.io.safely import read_bytes, refusing, write_bytes
 from prunus.model import Floats, Ints
 
 LARGEST = 2**30
 """No file that we write unpacks to more bytes."""
 TOLD = "told"
-BROKEN = (
-    ValueError, KeyError, OSError, EOFError, MemoryError, RuntimeError, NotImplementedError,
-    zipfile.BadZipFile, zlib.error,
-)  # fmt: skip
-"""What reading something else than such a file may raise."""
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -46,14 +39,12 @@ def read_arrays(path: Path) -> tuple[Arrays, str]:
     Raises PrunusError where it is no such file.
     """
     content = read_bytes(path)
-    try:
+    with refusing(path, "file of arrays"):
         with zipfile.ZipFile(io.BytesIO(content)) as held:
             if sum(entry.file_size for entry in held.infolist()) > LARGEST:
                 raise ValueError("it would unpack to over a gigabyte")
         with np.load(io.BytesIO(content), allow_pickle=False) as held:
             return {name: _wide(held[name]) for name in held if name != TOLD}, str(held[TOLD])
-    except BROKEN as error:
-        raise PrunusError(f"{path}: not a file of arrays ({error})") from error
 
 
 def finite(arrays: Arrays, name: str) -> Floats:

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from prunus.errors import PrunusError
+from prunus.io.columns import Columns
 from prunus.io.inputs import Source
 from prunus.io.messages import cloud_points, depth_points
-from prunus.io.readers import Columns
-from prunus.io.safely import check_readable
+from prunus.io.safely import check_readable, refusing
 from prunus.io.topics import CLOUD, TRANSFORMS, camera_of, chosen, counted, messages
 from prunus.io.transforms import Transforms, frame_of, time_of
 from prunus.io.views import View, placed
@@ -39,14 +39,12 @@ def read_bag(source: Source) -> tuple[Floats, Bytes | None, list[str]]:
     named = str(source.full)
     check_readable(source.path)
     reader, types = _rosbags(named)
-    # rosbags raises whatever its parsing trips over; the file is at fault in every case.
-    try:
-        with _plain(source.path) as path, reader([path], default_typestore=types) as bag:
-            return _read(bag, source.topic, named)
-    except PrunusError:
-        raise
-    except Exception as error:
-        raise PrunusError(f"{named}: not a readable bag: {error}") from error
+    with (
+        refusing(named, "bag"),
+        _plain(source.path) as path,
+        reader([path], default_typestore=types) as bag,
+    ):
+        return _read(bag, source.topic, named)
 
 
 @contextmanager
@@ -76,6 +74,8 @@ def _rosbags(named: str) -> tuple[Any, Any]:
 def _read(bag: Any, wanted: str | None, named: str) -> tuple[Floats, Bytes | None, list[str]]:
     topic = chosen(bag, wanted, named)
     views, taken = _views(bag, topic, f"{named} {topic}" if wanted is None else named)
+    if not views:
+        raise PrunusError(f"{named}: no message on {topic}, though the index promises some")
     parts, where = placed(views, _transforms(bag, views, named), named)
     xyz = np.concatenate([xyz for xyz, _ in parts])
     colours = [rgb for _, rgb in parts if rgb is not None]

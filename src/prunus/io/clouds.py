@@ -1,4 +1,4 @@
-"""Point clouds from files: PLY, PCD, XYZ / TXT / CSV, LAS / LAZ, NPY, NPZ, and ROS bags."""
+"""Point clouds from files of every kind in docs/inputs.md, and from ROS bags: the one door."""
 
 from __future__ import annotations
 
@@ -13,18 +13,20 @@ import numpy as np
 
 from prunus.errors import OptionError, PrunusError
 from prunus.io.bags import read_bag
-from prunus.io.inputs import BAGS, Source, is_bag, source_of
+from prunus.io.columns import Content
+from prunus.io.inputs import BAGS, Source, clouds_in, is_bag, source_of
 from prunus.io.ply import ply_bytes, table_of
 from prunus.io.readers import READERS
-from prunus.io.safely import digest_of, read_bytes, write_bytes
+from prunus.io.real import check_steps, only_real
+from prunus.io.safely import digest_of, read_bytes, refusing, write_bytes
+from prunus.io.units import UNITS, metres_in, unit_of
 from prunus.model import Floats
 from prunus.model.arrays import Bytes
 
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
-"""Metres in one unit."""
-
-PLAUSIBLE = 50.0
+PLAUSIBLE_M = 50.0
 """A scan wider than so many metres is not in metres, unless `unit` says so."""
+PLAUSIBLE_TOLD_M = 1000.0
+"""Nor is one so wide where a header with a place for the unit says so."""
 PLAUSIBLE_CM = 600.0
 """A scan wider than so many units is not in centimetres either."""
 
@@ -33,7 +35,8 @@ PLAUSIBLE_CM = 600.0
 class FileCloud:
     """What a file holds: xyz (P, 3) in metres in its own frame, rgb (P, 3) or None, its sha256.
 
-    `name` is the last part of the path, of a bag with the topic that was asked for.
+    `name` is the last part of the path, of a bag with the topic that was asked for. `unit` is what
+    the file was read in; `notes` say what was done and left out on the way.
     """
 
     path: Path
@@ -41,6 +44,7 @@ class FileCloud:
     rgb: Bytes | None
     sha256: str
     notes: list[str]
+    unit: str = "m"
 
     @property
     def name(self) -> str:
@@ -49,39 +53,83 @@ class FileCloud:
 
 
 def read_cloud(path: str | Path, unit: str | None = None) -> FileCloud:
-    """Read a cloud; `unit` (m, cm, mm) is that of the file, None = metres and checked.
+    """Read a cloud; `unit` (m, cm, mm, ft, us-ft, in) is that of the file.
 
-    A bag, `bag.mcap#/topic` and the folder of one tree are read too (see docs/inputs.md).
+    None: what its header tells, else metres, checked. A bag, `bag.mcap#/topic`, the folder of one
+    tree and one of a single cloud are read too (see docs/inputs.md).
     Raises PrunusError naming the file, what was found and what was expected.
     """
-    if unit is not None and unit not in UNITS:
-        raise PrunusError(f"unknown unit {unit!r}; expected one of {sorted(UNITS)}")
+    asked = None if unit is None else metres_in(unit)
     source = source_of(Path(path))
     if is_bag(source.path):
-        return _read_bag(source, UNITS[unit or "m"])
-    return _read_file(source.path, unit)
+        xyz, rgb, notes = read_bag(source)
+        held = only_real(Content(xyz, rgb, notes=notes), source.full)
+        sha256 = digest_of(source.path)
+    else:
+        content = _file_of(source.path)
+        sha256 = hashlib.sha256(content).hexdigest()
+        with refusing(source.path, _kind_of(source.path)), np.errstate(all="ignore"):
+            held = READERS[source.path.suffix.lower()](content, source.path)
+        held = only_real(held, source.full)
+    metres, notes = _metres(held, asked, source)
+    notes += check_steps(held.xyz, metres, source.full)
+    xyz = held.xyz if metres == 1 else held.xyz * metres
+    return FileCloud(source.full, xyz, held.rgb, sha256, [*held.notes, *notes], unit_of(metres))
 
 
-def _read_bag(source: Source, metres: float) -> FileCloud:
-    xyz, rgb, notes = read_bag(source)
-    xyz, rgb, _ = _finite(xyz, rgb, source.full)
-    return FileCloud(source.full, xyz * metres, rgb, digest_of(source.path), notes)
-
-
-def _read_file(path: Path, unit: str | None) -> FileCloud:
-    reader = READERS.get(path.suffix.lower())
-    if reader is None:
+def _file_of(path: Path) -> bytes:
+    """The content of a cloud file; PrunusError where the path is none."""
+    if path.is_dir():
+        raise PrunusError(_not_one(path))
+    if path.suffix.lower() not in READERS:
         expected = " ".join([*READERS, *BAGS])
+        what = f"unknown kind of file {path.suffix!r}" if path.suffix else "no ending in the name"
+        raise PrunusError(f"{path}: {what}; expected one of {expected}")
+    return read_bytes(path)
+
+
+def _not_one(folder: Path) -> str:
+    """What is wrong with a folder that stands for no one cloud."""
+    try:
+        inside = clouds_in(folder)
+    except OSError as error:
+        return f"{folder}: cannot be read ({error.strerror})"
+    names = ", ".join(path.relative_to(folder).as_posix() for path in inside[:9])
+    more = ", ..." if len(inside) > 9 else ""
+    found = f"{len(inside)} clouds: {names}{more}" if inside else "no cloud"
+    return f"{folder}: a folder of {found}; expected one cloud"
+
+
+def _kind_of(path: Path) -> str:
+    ending = path.suffix.lower()
+    named = {".npy": "numpy", ".npz": "numpy", ".las": "LAS or LAZ", ".laz": "LAS or LAZ"}
+    return f"{named.get(ending, ending[1:].upper())} file"
+
+
+def _metres(held: Content, asked: float | None, source: Source) -> tuple[float, list[str]]:
+    """Metres in one unit of a cloud, and notes on how that is known.
+
+    What is asked for counts before what the header tells; PrunusError where neither is plausible.
+    """
+    told, path = held.metres, source.full
+    if asked is not None:
+        unit, notes = unit_of(asked), []
+        if held.fault:
+            notes.append(f"unit {unit} as asked, but {held.fault}")
+        elif told is not None and unit_of(told) != unit:
+            notes.append(f"unit {unit} as asked, but the header tells {unit_of(told)}")
+        elif asked != 1:
+            notes.append(f"unit {unit} as asked: all that is written is in metres")
+        return asked, notes
+    if held.fault:
         raise PrunusError(
-            f"{path}: unknown kind of file {path.suffix!r}; expected one of {expected}"
+            f"{path}: {held.fault}; expected lengths. Say --unit m if they are metres all the same"
         )
-    content = read_bytes(path)
-    xyz, rgb = reader(content, path)
-    xyz, rgb, notes = _finite(xyz, rgb, path)
-    if unit is None:
-        _check_metres(xyz, path)
-    xyz = xyz * UNITS[unit or "m"] if unit not in (None, "m") else xyz
-    return FileCloud(path, xyz, rgb, hashlib.sha256(content).hexdigest(), notes)
+    if not is_bag(source.path):
+        _check_width(held, path)
+    if told is None or told == 1:
+        return 1.0, []
+    return told, [f"unit {unit_of(told)}, as the header tells: all that is written is in metres"]
 
 
 def write_cloud(path: str | Path, xyz: Floats, rgb: Bytes | None = None) -> None:
@@ -100,37 +148,18 @@ def check_kind(path: Path) -> None:
         )
 
 
-def _finite(xyz: Floats, rgb: Bytes | None, path: Path) -> tuple[Floats, Bytes | None, list[str]]:
-    if len(xyz) == 0:
-        raise PrunusError(f"{path}: holds no points; expected at least one")
-    if np.isfinite(xyz.sum()):
-        return xyz, rgb, []
-    finite = np.isfinite(xyz)
-    nothing = np.isnan(xyz).all(axis=1)
-    if path.suffix.lower() == ".pcd" and nothing.any():
-        kept = ~nothing
-        notes = [f"{nothing.sum()} of {len(xyz)} pixels saw nothing (NaN) and were left out"]
-        rest, colours, _ = _finite(xyz[kept], None if rgb is None else rgb[kept], path)
-        return rest, colours, notes
-    bad = ~finite.all(axis=1)
-    if not bad.any():
-        return xyz, rgb, []
-    raise PrunusError(
-        f"{path}: {bad.sum()} of {len(xyz)} points hold NaN or infinity (the first is point "
-        f"{int(bad.argmax()) + 1}); expected finite coordinates"
-    )
-
-
-def _check_metres(xyz: Floats, path: Path) -> None:
-    step = max(1, len(xyz) // 20_000)
-    low, high = np.quantile(xyz[::step], [0.02, 0.98], axis=0)
+def _check_width(held: Content, path: Path) -> None:
+    told = held.metres
+    step = max(1, len(held.xyz) // 20_000)
+    low, high = np.quantile(held.xyz[::step], [0.02, 0.98], axis=0)
     wide = float((high - low).max())
-    if wide <= PLAUSIBLE:
+    if wide * (told or 1) <= (PLAUSIBLE_TOLD_M if told and held.sure else PLAUSIBLE_M):
         return
     unit, name = ("cm", "centimetres") if wide <= PLAUSIBLE_CM else ("mm", "millimetres")
+    unknown = "expected a tree in metres" if told is None else f"the header tells {unit_of(told)}"
     raise PrunusError(
-        f"{path}: the scan is {wide:.0f} units wide, expected a tree in metres; it looks like "
-        f"{name}: say --unit {unit} (or --unit m if it is in metres all the same)"
+        f"{path}: the scan is {wide:.0f} units wide, {unknown}; it looks like {name}: say "
+        f"--unit {unit} (or what it is: {', '.join(UNITS)}; --unit m if metres all the same)"
     )
 
 

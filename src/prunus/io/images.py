@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from prunus.errors import PrunusError
-from prunus.io.safely import read_bytes
+from prunus.io.numpyfiles import npy_array
+from prunus.io.safely import read_bytes, refusing
 from prunus.model import Bools, Floats
 from prunus.model.arrays import Bytes
 
@@ -51,12 +52,8 @@ def _image(path: Path, deep: bool = False) -> Image:
 
 
 def _npy(content: bytes, path: Path) -> Image:
-    try:
-        image = np.load(io.BytesIO(content), allow_pickle=False)
-    except (ValueError, OSError, EOFError, SyntaxError) as error:
-        raise PrunusError(f"{path}: not a readable NPY file: {error}") from error
-    if not isinstance(image, np.ndarray):
-        raise PrunusError(f"{path}: not an NPY file; expected one array")
+    with refusing(path, "NPY file"):
+        image = npy_array(content)
     return image.astype(image.dtype.newbyteorder("="))
 
 
@@ -67,15 +64,12 @@ def _pillow(content: bytes, path: Path, deep: bool) -> Image:
         raise PrunusError(
             f"{path}: images other than NPY need Pillow; expected pip install 'prunus[fuse]'"
         ) from error
-    try:
-        with Pillow.open(io.BytesIO(content)) as image:
-            if not deep:
-                return np.asarray(image if image.mode in GREY else image.convert("RGB"))
-            steps = np.asarray(image)
-            fits = image.mode in DEEP and steps.size and 0 <= steps.min() <= steps.max() < 2**16
-            return steps.astype(np.uint16) if fits else steps
-    except (OSError, ValueError, SyntaxError, Pillow.DecompressionBombError) as error:
-        raise PrunusError(f"{path}: not a readable image: {error}") from error
+    with refusing(path, "image"), Pillow.open(io.BytesIO(content)) as image:
+        if not deep:
+            return np.asarray(image if image.mode in GREY else image.convert("RGB"))
+        steps = np.asarray(image)
+        fits = image.mode in DEEP and steps.size and 0 <= steps.min() <= steps.max() < 2**16
+        return steps.astype(np.uint16) if fits else steps
 
 
 def _kind(image: Image) -> str:

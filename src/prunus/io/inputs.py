@@ -10,9 +10,13 @@ from pathlib import Path
 
 from prunus.errors import PrunusError
 from prunus.io.readers import READERS
+from prunus.io.text import may_be_cloud
 
 BAGS = (".bag", ".mcap", ".db3")
 """Endings of recordings: ROS 1, and the two stores of ROS 2."""
+
+WORDY = (".txt", ".csv", ".asc")
+"""Endings that notes and tables have too: in a folder, such a file without points is no scan."""
 
 ONE_TREE = {"cloud_final.ply": (), "scan.ply": ("trees.npz", "truth.json")}
 """Clouds that stand for their folder, and beside which of these files (none: always)."""
@@ -45,14 +49,15 @@ def source_of(path: Path) -> Source:
     """What a path names: `bag.mcap#/points` is a topic of a bag, unless a file is called so.
 
     No topic holds that mark, so the last one counts. The folder of one tree names its cloud
-    (see `tree_in`). PrunusError where the path cannot be looked at.
+    (see `tree_in`), and so does any other that holds but one. PrunusError where the path cannot be
+    looked at.
     """
     try:
         there = path.exists()
     except OSError as error:
         raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
     if there:
-        return Source(tree_in(path) or path)
+        return Source(tree_in(path) or _only_in(path) or path)
     bag, _, topic = path.as_posix().rpartition("#")
     if bag and topic and is_bag(Path(bag)):
         return Source(Path(bag), topic)
@@ -79,6 +84,14 @@ def tree_in(folder: Path) -> Path | None:
     return None
 
 
+def _only_in(folder: Path) -> Path | None:
+    """The one cloud or bag of a folder that is none itself."""
+    with suppress(OSError):
+        inside = clouds_in(folder) if folder.is_dir() and not is_bag(folder) else []
+        return inside[0] if len(inside) == 1 else None
+    return None
+
+
 def is_one(path: Path) -> bool:
     """Whether a path names one input: a file, a bag, or the folder of one tree."""
     return not path.is_dir() or is_bag(path) or tree_in(path) is not None
@@ -88,7 +101,8 @@ def clouds_in(folder: Path) -> list[Path]:
     """The inputs that a folder holds, by name.
 
     A bag is itself, the folder of one tree its cloud. Elsewhere clouds and bags right inside, and
-    what of its folders is a bag or one tree.
+    what of its folders is a bag or one tree; neither hidden ones nor notes. OSError where it cannot
+    be looked into.
     """
     if is_one(folder):
         return [tree_in(folder) or folder]
@@ -97,11 +111,13 @@ def clouds_in(folder: Path) -> list[Path]:
 
 
 def _is_input(path: Path) -> bool:
-    if path.is_dir() and is_one(path):
-        return True
+    """Whether something in a folder is an input; a link that leads nowhere is one that fails."""
+    if path.name.startswith(".") or path.is_dir() or (path.exists() and not path.is_file()):
+        return path.is_dir() and not path.name.startswith(".") and is_one(path)
     if any(path.match(name) for name in OF_WORK) and (path.parent / JOURNAL).is_file():
         return False
-    return path.suffix.lower() in (*READERS, *BAGS)
+    ending = path.suffix.lower()
+    return ending in (*READERS, *BAGS) and (ending not in WORDY or may_be_cloud(path))
 
 
 def names_of(paths: list[Path]) -> list[str]:

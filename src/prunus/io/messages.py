@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from prunus.errors import PrunusError
-from prunus.io.readers import Columns, columns_of, unpacked
+from prunus.io.columns import Columns, columns_of, unpacked
 from prunus.model import Floats
 
 KINDS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from prunus.errors import PrunusError
-from prunus.io.safely import read_bytes, write_bytes
+from prunus.io.safely import read_marked, write_bytes
 from prunus.io.skeletons import InputRecord
 
 Point = tuple[float, float, float]
@@ -102,7 +102,7 @@ def read_plan(path: str | Path) -> PlanFile:
     """The plan in a file; PrunusError naming file and field otherwise."""
     path = Path(path)
     try:
-        return PlanFile.model_validate_json(read_bytes(path))
+        return PlanFile.model_validate_json(read_marked(path))
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"]) or "the file"

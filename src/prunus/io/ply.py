@@ -1,4 +1,4 @@
-"""PLY tables: ASCII, little and big endian, any numeric properties.
+"""PLY tables as all programs write them: ASCII, little and big endian, further elements, lists.
 
 Written here because the usual package for it (plyfile) is under the GPL, which does not suit MIT.
 """
@@ -6,7 +6,10 @@ Written here because the usual package for it (plyfile) is under the GPL, which 
 from __future__ import annotations
 
 import io
+import re
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from prunus.errors import PrunusError
+from prunus.io.safely import BYTE_ORDER_MARK
+from prunus.model.arrays import Floats
 
 Table = NDArray[Any]
 """A structured array: one named field a property."""
@@ -27,105 +32,312 @@ TYPES = {
 NAMES = {np.dtype(code): name for name, code in reversed(TYPES.items())}
 ORDERS = {"ascii": "<", "binary_little_endian": "<", "binary_big_endian": ">"}
 
+LONGEST_RUN = 2**20
+"""Rows with lists that are looked at together, at most."""
 
-@dataclass
+
+@dataclass(frozen=True)
+class _Property:
+    """Its name, the type of its numbers, and for a list that of the count before them."""
+
+    name: str
+    kind: str
+    count: str | None = None
+
+
+@dataclass(frozen=True)
 class _Element:
     name: str
     rows: int
-    fields: list[tuple[str, str]]
-    has_list: bool = False
+    properties: list[_Property]
+
+    @property
+    def has_list(self) -> bool:
+        return any(prop.count for prop in self.properties)
+
+
+@dataclass(frozen=True)
+class _Header:
+    form: str
+    elements: list[_Element]
+    comments: list[str]
+    body: int
 
 
 def read_ply(content: bytes, path: Path, wanted: tuple[str, ...] = ("vertex",)) -> dict[str, Table]:
     """The wanted elements as structured arrays, by name. Elements after the last one are not read.
 
+    A list is a field of shape (k,) where all rows of its element hold k, else a field of arrays.
     Raises PrunusError on a wrong header, a truncated body, or text among the numbers.
     """
-    form, elements, body = _header(content, path)
-    tables: dict[str, Table] = {}
-    lines = iter(content[body:].splitlines()) if form == "ascii" else iter(())
-    for element in elements:
-        if set(wanted) <= set(tables):
-            break
-        if element.has_list:
-            raise PrunusError(
-                f"{path}: the element {element.name!r} holds a list; "
-                f"expected plain numbers up to the element {wanted[-1]!r}"
-            )
-        dtype = np.dtype([(name, ORDERS[form] + code) for name, code in element.fields])
-        if form == "ascii":
-            table = _ascii(lines, dtype, element, path)
-        else:
-            table = _binary(content, body, dtype, element, path)
-            body += table.nbytes
-        if element.name in wanted:
-            tables[element.name] = table
-    missing = [name for name in wanted if name not in tables]
+    content = content.removeprefix(BYTE_ORDER_MARK)
+    header = _header(content, path)
+    missing = [name for name in wanted if name not in {one.name for one in header.elements}]
     if missing:
         raise PrunusError(f"{path}: no element {missing[0]!r} in the PLY header; expected one")
+    tables: dict[str, Table] = {}
+    body = (
+        _Lines(content, header, path) if header.form == "ascii" else _Bytes(content, header, path)
+    )
+    for element in header.elements:
+        if set(wanted) <= set(tables):
+            break
+        table = body.table(element, element.name in wanted)
+        if element.name in wanted:
+            tables[element.name] = table
     return tables
 
 
-def _header(content: bytes, path: Path) -> tuple[str, list[_Element], int]:
-    end = content.find(b"end_header")
-    if not content.startswith(b"ply") or end < 0:
-        raise PrunusError(f"{path}: not a PLY file: expected 'ply' first and 'end_header' later")
-    form, elements = "", []
-    for line in content[:end].decode("latin-1").splitlines()[1:]:
+def ply_comments(content: bytes, path: Path) -> list[str]:
+    """The comments in the header of a PLY file."""
+    return _header(content.removeprefix(BYTE_ORDER_MARK), path).comments
+
+
+def _header(content: bytes, path: Path) -> _Header:
+    lines = _header_lines(content, path)
+    form, body, elements, comments = "", 0, list[_Element](), list[str]()
+    for line, end in lines:
         match line.split():
-            case ["format", name, _] if name in ORDERS:
+            case ["end_header"]:
+                body = end
+                break
+            case ["format", name, *_] if name in ORDERS:
                 form = name
-            case ["element", name, rows] if rows.isdigit():
+            case ["element", name, rows] if re.fullmatch("[0-9]{1,18}", rows):
                 elements.append(_Element(name, int(rows), []))
-            case ["property", "list", *_] if elements:
-                elements[-1].has_list = True
-            case ["property", kind, name] if elements and kind in TYPES:
-                elements[-1].fields.append((name, TYPES[kind]))
-            case [] | ["comment" | "obj_info", *_]:
+            case ["property", "list", count, kind, *name] if (
+                elements and name and kind in TYPES and TYPES.get(count, "f")[0] in "iu"
+            ):
+                elements[-1].properties.append(_Property(" ".join(name), TYPES[kind], TYPES[count]))
+            case ["property", kind, *name] if elements and name and kind in TYPES:
+                elements[-1].properties.append(_Property(" ".join(name), TYPES[kind]))
+            case ["comment" | "obj_info", *words]:
+                comments.append(" ".join(words))
+            case [] | ["ply"]:
                 pass
             case _:
                 raise PrunusError(f"{path}: the PLY header holds {line!r}, which means nothing")
+    else:
+        raise PrunusError(f"{path}: not a PLY file: expected 'ply' first and 'end_header' later")
     if not form:
         raise PrunusError(f"{path}: the PLY header names no format; expected {sorted(ORDERS)}")
-    return form, elements, content.index(b"\n", end) + 1 if b"\n" in content[end:] else len(content)
+    _check_names(elements, path)
+    return _Header(form, elements, comments, body)
 
 
-def _binary(
-    content: bytes, start: int, dtype: np.dtype[Any], element: _Element, path: Path
-) -> Table:
-    found = (len(content) - start) // max(dtype.itemsize, 1)
-    if found < element.rows:
-        raise PrunusError(
-            f"{path}: truncated: the header promises {element.rows} rows of {element.name!r}, "
-            f"the file holds {found}"
-        )
-    return np.frombuffer(content, dtype, element.rows, start)
+def _header_lines(content: bytes, path: Path) -> Iterator[tuple[str, int]]:
+    """The lines of a header, which end as its first one does, and where each ends."""
+    first = re.match(rb"ply[ \t]*(\r\n|\n|\r)", content)
+    if first is None:
+        raise PrunusError(f"{path}: not a PLY file: expected 'ply' first and 'end_header' later")
+    mark, start = first[1][-1:], first.end()
+    while (end := content.find(mark, start)) >= 0:
+        yield content[start:end].decode("latin-1"), end + 1
+        start = end + 1
+    yield content[start:].decode("latin-1"), len(content)
 
 
-def _ascii(lines: Any, dtype: np.dtype[Any], element: _Element, path: Path) -> Table:
-    rows = [line for line, _ in zip(lines, range(element.rows), strict=False)]
-    if len(rows) < element.rows:
-        raise PrunusError(
-            f"{path}: truncated: the header promises {element.rows} rows of {element.name!r}, "
-            f"the file holds {len(rows)}"
-        )
-    table = np.zeros(element.rows, dtype)
-    if element.rows:
-        values = parse_rows(io.BytesIO(b"\n".join(rows)), path, columns=len(element.fields))
-        for column, (name, _) in enumerate(element.fields):
-            table[name] = values[:, column]
+def _check_names(elements: list[_Element], path: Path) -> None:
+    groups = [[e.name for e in elements], *([p.name for p in e.properties] for e in elements)]
+    double = next((n for names in groups for n in names if names.count(n) > 1), None)
+    if double is not None:
+        raise PrunusError(f"{path}: the PLY header names {double!r} twice; expected it once")
+
+
+class _Bytes:
+    """A binary body, read from its begin to its end."""
+
+    def __init__(self, content: bytes, header: _Header, path: Path) -> None:
+        self._content, self._at, self._path = content, header.body, path
+        self._order = ORDERS[header.form]
+
+    def table(self, element: _Element, wanted: bool) -> Table:
+        """The next element; PrunusError where the bytes end too early."""
+        if not element.has_list:
+            return self._rows(element, self._dtype(element, []), element.rows, 0)
+        runs, done, guess = list[Table](), 0, 1
+        while done < element.rows:
+            kind = self._dtype(element, self._counts(element, done))
+            there = (len(self._content) - self._at) // kind.itemsize
+            run = self._rows(element, kind, min(guess, element.rows - done, max(there, 1)), done)
+            alike = _alike(run, element)
+            self._at -= (len(run) - alike) * kind.itemsize
+            guess = min(2 * guess, LONGEST_RUN) if alike == len(run) else 1
+            done += alike
+            if wanted:
+                runs.append(run[:alike])
+        return _joined(runs, element)
+
+    def _rows(self, element: _Element, kind: np.dtype[Any], rows: int, done: int) -> Table:
+        there = (len(self._content) - self._at) // max(kind.itemsize, 1)
+        if there < rows and kind.itemsize:
+            raise _truncated(element, done + there, self._path)
+        start = self._at
+        self._at += rows * kind.itemsize
+        if not kind.itemsize:
+            return np.zeros(0, kind)
+        return np.frombuffer(self._content, kind, rows, start)
+
+    def _counts(self, element: _Element, row: int) -> list[int]:
+        """How many numbers each list of the next row holds."""
+        at, counts = self._at, []
+        for prop in element.properties:
+            size = np.dtype(prop.kind).itemsize
+            if prop.count is None:
+                at += size
+                continue
+            head = np.dtype(self._order + prop.count)
+            if at + head.itemsize > len(self._content):
+                raise _truncated(element, row, self._path)
+            count = int(np.frombuffer(self._content, head, 1, at)[0])
+            _check_count(count, prop, self._path)
+            counts.append(count)
+            at += head.itemsize + count * size
+            if at > len(self._content):
+                raise _truncated(element, row, self._path)
+        return counts
+
+    def _dtype(self, element: _Element, counts: list[int]) -> np.dtype[Any]:
+        fields, lengths = list[Any](), iter(counts)
+        for prop in element.properties:
+            if prop.count is None:
+                fields.append((prop.name, self._order + prop.kind))
+            else:
+                fields.append((_count_of(prop), self._order + prop.count))
+                fields.append((prop.name, self._order + prop.kind, (next(lengths),)))
+        return np.dtype(fields)
+
+
+def _count_of(prop: _Property) -> str:
+    """The field of a list's count: a name that no property can have."""
+    return f"{prop.name}\n"
+
+
+def _alike(run: Table, element: _Element) -> int:
+    """How many rows, from the first, have lists as long as the first row's."""
+    same = np.ones(len(run), bool)
+    for prop in element.properties:
+        if prop.count is not None:
+            counts = run[_count_of(prop)]
+            same &= counts == counts[0]
+    return len(run) if same.all() else int(same.argmin())
+
+
+def _joined(runs: list[Table], element: _Element) -> Table:
+    """The rows of all runs as one table, without the counts."""
+    fields, columns = list[Any](), list[Any]()
+    for prop in element.properties:
+        parts = [run[prop.name] for run in runs]
+        shapes = {part.shape[1:] for part in parts}
+        if len(shapes) > 1:
+            rows = np.empty(sum(map(len, parts)), object)
+            for number, row in enumerate(row for part in parts for row in part):
+                rows[number] = row
+            columns.append(rows)
+        else:
+            columns.append(np.concatenate(parts) if parts else np.empty(0, prop.kind))
+        fields.append((prop.name, columns[-1].dtype, columns[-1].shape[1:]))
+    table = np.zeros(sum(map(len, runs)), fields)
+    for prop, column in zip(element.properties, columns, strict=True):
+        table[prop.name] = column
     return table
 
 
+class _Lines:
+    """An ASCII body, a line a row. Blank lines are none."""
+
+    def __init__(self, content: bytes, header: _Header, path: Path) -> None:
+        self._lines = (line for line in content[header.body :].splitlines() if line.strip())
+        self._path = path
+
+    def table(self, element: _Element, wanted: bool) -> Table:
+        """The next element; PrunusError where the lines end too early."""
+        lines = list(islice(self._lines, element.rows)) if element.properties else []
+        if element.properties and len(lines) < element.rows:
+            raise _truncated(element, len(lines), self._path)
+        if element.has_list and wanted:
+            return self._listed(lines, element)
+        kind = np.dtype([(prop.name, _written(prop)) for prop in element.properties])
+        table = np.zeros(len(lines) if wanted else 0, kind)
+        if wanted and lines:
+            held = io.BytesIO(b"\n".join(lines))
+            values = parse_rows(held, self._path, columns=len(element.properties), remark=None)
+            for column, prop in enumerate(element.properties):
+                table[prop.name] = _fitting(values[:, column], prop, self._path)
+        return table
+
+    def _listed(self, lines: list[bytes], element: _Element) -> Table:
+        """Rows with lists, word by word."""
+        runs = list[Table]()
+        for number, line in enumerate(lines, 1):
+            words, fields, row = iter(line.split()), list[Any](), list[Any]()
+            try:
+                for prop in element.properties:
+                    shape: tuple[int, ...] = ()
+                    if prop.count is not None:
+                        shape = (int(next(words)),)
+                        _check_count(shape[0], prop, self._path)
+                    read = float if prop.kind[0] == "f" else int
+                    held = [read(next(words)) for _ in range(shape[0] if shape else 1)]
+                    fields.append((prop.name, _written(prop), shape))
+                    row.append(held if shape else held[0])
+                runs.append(np.array([tuple(row)], fields))
+            except (StopIteration, ValueError, OverflowError) as error:
+                what = "too short" if isinstance(error, StopIteration) else str(error)
+                raise PrunusError(
+                    f"{self._path}: row {number} of {element.name!r}: {what}"
+                ) from error
+            if next(words, None) is not None:
+                raise PrunusError(f"{self._path}: row {number} of {element.name!r}: too long")
+        return _joined(runs, element)
+
+
+def _written(prop: _Property) -> str:
+    """The type of a number written as text: it may have more digits than a float holds."""
+    return "<f8" if prop.kind[0] == "f" else "<" + prop.kind
+
+
+def _fitting(values: Floats, prop: _Property, path: Path) -> Floats:
+    """The values, which a property of that type can hold; PrunusError where it cannot."""
+    if prop.kind[0] == "f":
+        return values
+    ends = np.iinfo(prop.kind)
+    wrong = ~((values >= ends.min) & (values <= ends.max) & (values == np.floor(values)))
+    if wrong.any():
+        raise PrunusError(
+            f"{path}: {prop.name!r} holds {values[wrong][0]:g}; "
+            f"the header promises whole numbers from {ends.min} to {ends.max}"
+        )
+    return values
+
+
+def _check_count(count: int, prop: _Property, path: Path) -> None:
+    if count < 0:
+        raise PrunusError(f"{path}: a list {prop.name!r} of {count} numbers; expected 0 or more")
+
+
+def _truncated(element: _Element, found: int, path: Path) -> PrunusError:
+    return PrunusError(
+        f"{path}: truncated: the header promises {element.rows} rows of {element.name!r}, "
+        f"the file holds {found}"
+    )
+
+
 def parse_rows(
-    lines: io.BytesIO, path: Path, columns: int | None = None, delimiter: str | None = None
+    lines: io.BytesIO,
+    path: Path,
+    columns: int | None = None,
+    delimiter: str | None = None,
+    remark: str | None = "#",
 ) -> NDArray[np.float64]:
-    """Rows of numbers (P, C) from text; PrunusError naming the row otherwise."""
-    if not any(line.split(b"#")[0].strip() for line in lines):
+    """Rows of numbers (P, C) from text; `remark`: what begins a comment. PrunusError otherwise."""
+    if lines.getbuffer()[:3] == BYTE_ORDER_MARK:
+        lines = io.BytesIO(lines.getvalue()[3:])
+    if not any(line.split((remark or "\n").encode())[0].strip() for line in lines):
         raise PrunusError(f"{path}: holds no points; expected rows of numbers")
     lines.seek(0)
     try:
-        values = np.loadtxt(lines, np.float64, delimiter=delimiter, ndmin=2, encoding="latin-1")
+        values = np.loadtxt(lines, np.float64, remark, delimiter, ndmin=2, encoding="latin-1")
     except (ValueError, OverflowError) as error:
         raise PrunusError(f"{path}: {error}; expected rows of numbers") from error
     if columns is not None and values.shape[1] != columns:

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 from prunus.errors import PrunusError
 from prunus.io.clouds import read_cloud
 from prunus.io.images import read_colour, read_depth, read_mask
-from prunus.io.safely import read_bytes
+from prunus.io.safely import read_marked
 from prunus.model import Camera, CloudView, DepthView, Floats, RigidMotion, RigView
 
 Row = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
@@ -67,7 +67,7 @@ def read_rig(folder: str | Path) -> list[RigView]:
     if file.exists():
         records = _records(file)
         return [_view(record, file, f"views.{k}") for k, record in enumerate(records)]
-    clouds = sorted(folder.glob("*_cloud.ply"))
+    clouds = sorted(path for path in folder.glob("*_cloud.ply") if path.name[0] != ".")
     if not clouds:
         raise PrunusError(f"{folder}: holds neither rig.json nor *_cloud.ply; expected one of them")
     still = RigidMotion(np.eye(3), np.zeros(3))
@@ -76,7 +76,7 @@ def read_rig(folder: str | Path) -> list[RigView]:
 
 def _records(file: Path) -> list[ViewRecord]:
     try:
-        return RigFile.model_validate_json(read_bytes(file)).views
+        return RigFile.model_validate_json(read_marked(file)).views
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"]) or "the file"

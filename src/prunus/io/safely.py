@@ -6,9 +6,33 @@ import contextlib
 import hashlib
 import os
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 from prunus.errors import PrunusError
+
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+"""What Excel and Notepad put before UTF-8."""
+
+
+@contextlib.contextmanager
+def refusing(named: object, kind: str) -> Iterator[None]:
+    """The one door to other people's parsers: whatever they raise becomes a PrunusError.
+
+    `named` is what the file is called in the message, `kind` what it was taken for.
+    """
+    # Broad on purpose, and the only place that is: numpy, laspy, lazrs, pye57, rosbags, zipfile,
+    # zlib and Pillow raise whatever their parsing trips over, each other's errors too, and lazrs,
+    # which is Rust, panics with a BaseException. The file is at fault in every case.
+    try:
+        yield
+    except (PrunusError, KeyboardInterrupt, SystemExit, GeneratorExit):
+        raise
+    except MemoryError as error:
+        raise PrunusError(f"{named}: too large for the memory there is ({kind})") from error
+    except BaseException as error:
+        why = " ".join(str(error).split())[:200] or type(error).__name__
+        raise PrunusError(f"{named}: not a readable {kind}: {why}") from error
 
 
 def read_bytes(path: Path) -> bytes:
@@ -17,9 +41,16 @@ def read_bytes(path: Path) -> bytes:
         content = path.read_bytes()
     except OSError as error:
         raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
+    except MemoryError as error:
+        raise PrunusError(f"{path}: too large for the memory there is") from error
     if not content:
         raise PrunusError(f"{path}: the file is empty")
     return content
+
+
+def read_marked(path: Path) -> bytes:
+    """The content of a text file in UTF-8 (see `read_bytes`), without a byte order mark."""
+    return read_bytes(path).removeprefix(BYTE_ORDER_MARK)
 
 
 def check_readable(path: Path) -> None:

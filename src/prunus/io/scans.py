@@ -16,7 +16,7 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.io.ply import ply_bytes, read_ply, table_of
-from prunus.io.safely import read_bytes, write_bytes
+from prunus.io.safely import read_bytes, refusing, write_bytes
 from prunus.model import Floats, Ints, Kind, Skeleton
 
 
@@ -83,11 +83,9 @@ def _trees_bytes(trees: list[Skeleton]) -> bytes:
 
 
 def _read_trees(path: Path) -> list[Skeleton]:
-    try:
-        with np.load(io.BytesIO(read_bytes(path)), allow_pickle=False) as held:
-            ends = np.cumsum(held["rows"])[:-1]
-            names = ("xyz", "parent", "label", "radius")
-            parts = [np.split(held[name], ends) for name in names]
-            return [Skeleton.build(*p[:3], radius=p[3]) for p in zip(*parts, strict=True)]
-    except (ValueError, KeyError, OSError) as error:
-        raise PrunusError(f"{path}: not a file of true trees ({error})") from error
+    content = read_bytes(path)
+    with refusing(path, "file of true trees"), np.load(io.BytesIO(content)) as held:
+        ends = np.cumsum(held["rows"])[:-1]
+        names = ("xyz", "parent", "label", "radius")
+        parts = [np.split(held[name], ends) for name in names]
+        return [Skeleton.build(*p[:3], radius=p[3]) for p in zip(*parts, strict=True)]

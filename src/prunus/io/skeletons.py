@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from prunus.errors import PrunusError
-from prunus.io.safely import read_bytes, write_bytes
+from prunus.io.safely import read_marked, write_bytes
 from prunus.model import Floats, Label, Skeleton
 
 Word = Literal["trunk", "support", "leader", "side_branch"]
@@ -105,7 +105,7 @@ def read_record(path: str | Path) -> tuple[Skeleton, SkeletonFile]:
     """The skeleton, and all that its file says; PrunusError naming file and field otherwise."""
     path = Path(path)
     try:
-        record = SkeletonFile.model_validate_json(read_bytes(path))
+        record = SkeletonFile.model_validate_json(read_marked(path))
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"]) or "the file"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from prunus.errors import PrunusError
-from prunus.io.readers import Columns
+from prunus.io.columns import Columns
 from prunus.io.transforms import Transforms
 from prunus.model import Floats
 from prunus.model.arrays import Bytes
