@@ -61,7 +61,7 @@ def run(*words: str | Path, **where: Any) -> str:
     try:
         return str(subprocess.run(command, check=True, timeout=PATIENCE_S, **pipes, **where).stdout)
     except (CalledProcessError, TimeoutExpired) as error:
-        raise WheelError(f"{error}\n{(error.output or str())[-3000:]}") from error
+        raise WheelError(f"{error}\n{(error.output or '')[-3000:]}") from error
 
 
 def uv(*words: str | Path) -> str:
