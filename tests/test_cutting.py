@@ -15,6 +15,8 @@ from prunus.io.plans import PlanFile
 from prunus.io.skeletons import read_record, write_skeleton
 from prunus.measure.cuts import shipped_rules
 from prunus.model import FRAMES, RigidMotion
+from prunus.params import Parameters
+from prunus.stages.confidence import HandmadeScorer
 from tests.conftest import simulated
 from tests.measure.cuts.trees import drawn
 from tests.test_cli import prunus
@@ -48,6 +50,18 @@ def test_a_cloud_gives_a_plan_in_its_own_frame(plan: PlanFile, folder: Path) -> 
         assert away.min() < 0.01, "it lies on the refined tree"
         assert cut.approach is not None
         assert cut.approach.direction[2] > 0, "away from the camera, which looks along z"
+
+
+def test_a_cloud_is_skeletonized_as_it_was_asked_for(plan: PlanFile, folder: Path) -> None:
+    path, base, params = folder / "tree.ply", (0.0, 0.0, 0.0), Parameters()
+    fewer = params.changed("input", points=5000)
+    asked = [(fewer, 0, None), (fewer, 1, None), (fewer, 1, HandmadeScorer())]
+    found = [plan] + [
+        cut_file(Source(path, base, params=params, seed=seed, scorer=scorer), RULES)
+        for params, seed, scorer in asked
+    ]
+    points = [[cut.point for cut in one.cuts] for one in found]
+    assert all(points.count(one) == 1 for one in points), "each of them changes the skeleton"
 
 
 @pytest.mark.parametrize("name", ["skeleton.json", "refined.json"])

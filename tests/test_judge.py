@@ -54,6 +54,20 @@ def test_other_tools_are_measured_by_geometry(tmp_path: Path) -> None:
     assert "leader" not in done.stdout
 
 
+@pytest.mark.parametrize(("aside", "hinted"), [(0.0, False), (0.03, False), (3.0, True)])
+def test_two_trees_that_have_nothing_in_common_get_a_hint(
+    aside: float, hinted: bool, tmp_path: Path
+) -> None:
+    write_skeleton(tmp_path / "gold.json", tree())
+    write_skeleton(
+        tmp_path / "found.json", replace(tree(), xyz=tree().xyz + np.array([aside, 0, 0]))
+    )
+    words = ["evaluate", str(tmp_path / "found.json"), str(tmp_path / "gold.json"), "--json"]
+    done = RUN.invoke(app, words)
+    assert done.exit_code == 0 and json.loads(done.stdout)["labels"]
+    assert ("are both of one tree, in one frame?" in done.stderr) == hinted
+
+
 def test_two_folders(tmp_path: Path) -> None:
     for name in ("a", "b"):
         write_skeleton(tmp_path / "out" / name / "skeleton.json", tree(BARE))

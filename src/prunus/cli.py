@@ -566,7 +566,7 @@ def experiment(
     A quick look: `prunus experiment -o out --trees 6 --draws 1`
 
     On trees corrected in the studio: `prunus experiment --gold prunus-studio -o out`
-    """  # fmt: skip
+    """
     from prunus.experiment.results import Orchard, experiment, lines_of
 
     waiting: Waiting = ctx.obj
