@@ -88,6 +88,8 @@ def npy(shape: str, descr: str = "'<f8'") -> bytes:
         (np.zeros(12, [("x", "U3"), ("y", "f8"), ("z", "f8")]), "'x' holds no numbers"),
         (np.zeros((0, 3)), "holds no points"),
         (np.float64(3), r"shape \(\)"),
+        (np.column_stack([np.arange(12), XYZ]), "first of 4 columns counts the points"),
+        (np.column_stack([1.7e9 + XYZ[:, 0], XYZ]), "first of 4 columns holds 1[67]"),
     ],
 )
 def test_what_is_no_cloud_is_refused(tmp_path: Path, array: np.ndarray, said: str) -> None:

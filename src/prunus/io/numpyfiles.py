@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from prunus.errors import PrunusError
-from prunus.io.columns import Content, colour_bytes, columns_of
+from prunus.io.columns import Content, check_first, colour_bytes, columns_of
 from prunus.model.arrays import Floats
 
 MAGIC = b"\x93NUMPY"
@@ -110,6 +110,7 @@ def _content(values: NDArray[Any], path: Path) -> Content:
         raise PrunusError(f"{path}: {found}: points across, it seems; expected (P, 3)")
     notes = []
     if columns > 3:
+        check_first(values.reshape(-1, columns), path)
         notes.append(f"{columns} columns without names: 1 to 3 are read as x, y, z")
     if values.shape == (3, 3):
         notes.append("3 x 3 numbers: each row is read as a point")
