@@ -66,7 +66,7 @@ def npy_array(content: bytes) -> NDArray[Any]:
     text = content[8 + size : begin].decode("latin-1" if content[6] < 3 else "utf-8")
     # Python 2 wrote its long integers as 3L.
     told = ast.literal_eval(re.sub(r"(?<=[0-9])L(?=[,)])", "", text))
-    if not isinstance(told, dict) or told.keys() < {"descr", "fortran_order", "shape"}:
+    if not isinstance(told, dict) or not told.keys() >= {"descr", "fortran_order", "shape"}:
         raise ValueError(f"the header is {text[:60]!r}")
     kind, shape = np.lib.format.descr_to_dtype(told["descr"]), told["shape"]
     if not isinstance(shape, tuple) or not all(type(length) is int for length in shape):
