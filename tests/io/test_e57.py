@@ -79,3 +79,56 @@ def test_without_pye57_it_says_what_to_install(
     monkeypatch.setitem(__import__("sys").modules, "pye57", None)
     with pytest.raises(PrunusError, match=r"a\.e57: .*pip install 'prunus\[e57\]'"):
         read_cloud(tmp_path / "a.e57")
+
+
+def spherical(path: Path, columns: dict[str, np.ndarray], brightest: int | None = None) -> Path:
+    """An E57 of one scan without a pose, each column a field of doubles."""
+    from pye57 import libe57
+
+    with pye57.E57(str(path), mode="w") as file:
+        image = file.image_file
+        scan, prototype = libe57.StructureNode(image), libe57.StructureNode(image)
+        if brightest is not None:
+            limits = libe57.StructureNode(image)
+            limits.set("colorRedMaximum", libe57.IntegerNode(image, brightest))
+            scan.set("colorLimits", limits)
+        buffers = libe57.VectorSourceDestBuffer()
+        for name, values in columns.items():
+            prototype.set(name, libe57.FloatNode(image, 0.0, libe57.E57_DOUBLE, -1e9, 1e9))
+            buffers.append(libe57.SourceDestBuffer(image, name, values, len(values), True, True))
+        codecs = libe57.VectorNode(image, True)
+        points = libe57.CompressedVectorNode(image, prototype, codecs)
+        scan.set("points", points)
+        file.data3d.append(scan)
+        writer = points.writer(buffers)
+        writer.write(len(values))
+        writer.close()
+    return path
+
+
+def test_spherical_coordinates_are_turned_into_cartesian_ones(tmp_path: Path) -> None:
+    far = np.linalg.norm(XYZ, axis=1)
+    columns = {
+        "sphericalRange": far,
+        "sphericalAzimuth": np.arctan2(XYZ[:, 1], XYZ[:, 0]),
+        "sphericalElevation": np.arcsin(XYZ[:, 2] / far),
+    }
+    cloud = read_cloud(spherical(tmp_path / "a.e57", columns))
+    assert cloud.xyz == pytest.approx(XYZ, abs=1e-12)
+
+
+@pytest.mark.parametrize(("brightest", "taken"), [(255, True), (65535, False), (None, True)])
+def test_colours_that_are_no_bytes_are_not_taken(
+    tmp_path: Path, brightest: int | None, taken: bool
+) -> None:
+    held = columns(XYZ.copy()) | {f"color{c}": np.full(60, 7.0) for c in ("Red", "Green", "Blue")}
+    held = {name: np.ascontiguousarray(values) for name, values in held.items()}
+    cloud = read_cloud(spherical(tmp_path / "a.e57", held, brightest))
+    assert cloud.xyz == pytest.approx(XYZ, abs=1e-12)
+    assert (cloud.rgb is not None) == taken
+    assert cloud.notes == ([] if taken else ["no colours: they are no bytes"])
+
+
+def test_a_scan_of_something_else_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(PrunusError, match=r"a\.e57: a scan of intensity; expected cartesianX"):
+        read_cloud(spherical(tmp_path / "a.e57", {"intensity": np.ones(9)}))

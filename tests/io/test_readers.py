@@ -19,7 +19,7 @@ from prunus.io.numpyfiles import read_npy, read_npz
 from prunus.io.pcd import read_pcd
 from prunus.io.ply import TYPES, read_ply
 from prunus.io.readers import READERS
-from prunus.io.safely import refusing
+from prunus.io.safely import parsing
 from prunus.io.text import read_text
 
 HERE = Path("a.txt")
@@ -150,7 +150,7 @@ def test_a_pcd_gives_all_its_points_or_none(
     assert np.array_equal(read_pcd(content, HERE).xyz, xyz)
     cut = content[: data.draw(st.integers(0, len(content) - 1))]
     try:
-        with refusing(HERE, "PCD"):
+        with parsing(HERE, "PCD"):
             found = read_pcd(cut, HERE).xyz
     except PrunusError:
         return
@@ -223,7 +223,7 @@ def test_an_array_gives_all_its_points_or_none(
             continue
         assert np.array_equal(read(content, HERE).xyz, xyz)
         cut = content[: data.draw(st.integers(0, len(content) - 1))]
-        with pytest.raises(PrunusError), refusing(HERE, "array"):
+        with pytest.raises(PrunusError), parsing(HERE, "array"):
             read(cut, HERE)
 
 
@@ -273,7 +273,7 @@ def test_whatever_a_library_raises_names_the_file(
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, SystemExit, GeneratorExit])
 def test_the_door_stops_nobody_who_leaves(error: type[BaseException]) -> None:
-    with pytest.raises(error), refusing("a", "file"):
+    with pytest.raises(error), parsing("a", "file"):
         raise error
 
 

@@ -26,6 +26,7 @@ from prunus.errors import PrunusError
 from prunus.io.inputs import JOURNAL
 from prunus.io.safely import write_bytes
 from prunus.io.skeletons import InputRecord
+from prunus.io.units import Unit
 from prunus.model.cloud import FRAMES
 from prunus.params import Parameters
 
@@ -48,7 +49,7 @@ class Head(BaseModel):
     params: dict[str, Any]
     seed: int
     frame: str
-    unit: Literal["m", "cm", "mm"] | None
+    unit: Unit | None
     base: tuple[float, float, float] | None
     superpoints: str
     gives: str

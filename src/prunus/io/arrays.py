@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from prunus.io.safely import read_bytes, refusing, write_bytes
+from prunus.io.safely import parsing, read_bytes, write_bytes
 from prunus.model import Floats, Ints
 
 LARGEST = 2**30
@@ -39,7 +39,7 @@ def read_arrays(path: Path) -> tuple[Arrays, str]:
     Raises PrunusError where it is no such file.
     """
     content = read_bytes(path)
-    with refusing(path, "file of arrays"):
+    with parsing(path, "file of arrays"):
         with zipfile.ZipFile(io.BytesIO(content)) as held:
             if sum(entry.file_size for entry in held.infolist()) > LARGEST:
                 raise ValueError("it would unpack to over a gigabyte")

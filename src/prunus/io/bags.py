@@ -18,7 +18,7 @@ from prunus.errors import PrunusError
 from prunus.io.columns import Columns
 from prunus.io.inputs import Source
 from prunus.io.messages import cloud_points, depth_points
-from prunus.io.safely import check_readable, refusing
+from prunus.io.safely import check_readable, parsing
 from prunus.io.topics import CLOUD, TRANSFORMS, camera_of, chosen, counted, messages
 from prunus.io.transforms import Transforms, frame_of, time_of
 from prunus.io.views import View, placed
@@ -40,7 +40,7 @@ def read_bag(source: Source) -> tuple[Floats, Bytes | None, list[str]]:
     check_readable(source.path)
     reader, types = _rosbags(named)
     with (
-        refusing(named, "bag"),
+        parsing(named, "bag"),
         _plain(source.path) as path,
         reader([path], default_typestore=types) as bag,
     ):

@@ -18,7 +18,7 @@ from prunus.io.inputs import BAGS, Source, clouds_in, is_bag, source_of
 from prunus.io.ply import ply_bytes, table_of
 from prunus.io.readers import READERS
 from prunus.io.real import check_steps, only_real
-from prunus.io.safely import digest_of, read_bytes, refusing, write_bytes
+from prunus.io.safely import digest_of, parsing, read_bytes, write_bytes
 from prunus.io.units import UNITS, metres_in, unit_of
 from prunus.model import Floats
 from prunus.model.arrays import Bytes
@@ -68,7 +68,7 @@ def read_cloud(path: str | Path, unit: str | None = None) -> FileCloud:
     else:
         content = _file_of(source.path)
         sha256 = hashlib.sha256(content).hexdigest()
-        with refusing(source.path, _kind_of(source.path)), np.errstate(all="ignore"):
+        with parsing(source.path, _kind_of(source.path)), np.errstate(all="ignore"):
             held = READERS[source.path.suffix.lower()](content, source.path)
         held = only_real(held, source.full)
     metres, notes = _metres(held, asked, source)

@@ -38,6 +38,9 @@ COLOURS = (
 DARKEST = 32
 """Some point of a cloud with colours is as bright, of 255."""
 
+LATEST = 1e8
+"""A first number beyond is no coordinate of a survey, but a time."""
+
 BRACKETED = re.compile(r"\s*[\[(]\s*([^\])]*?)\s*[\])]$")
 """A unit behind a name: `x[m]`, `Y (mm)`."""
 
@@ -149,6 +152,22 @@ def colour_bytes(rgb: Any) -> Bytes | None:
         return (values / 256).astype(np.uint8)
     share = rgb.dtype.kind == "f" and high <= 1
     return (values * 255 if share else values).astype(np.uint8)
+
+
+def check_first(rows: Floats, path: Path) -> None:
+    """That the first of columns (P, C) without names is no number of the point, and no time.
+
+    PrunusError where it counts on among fractions, or is larger than any coordinate of a survey.
+    """
+    real = rows[np.isfinite(rows[:, :3]).all(axis=1)]
+    steps, whole = np.diff(real[:, 0]), (real[:, :3] == np.floor(real[:, :3])).all(axis=0)
+    counts = len(real) > 2 and bool((steps > 0).all() and whole[0] and not whole[1:].any())
+    if counts or np.abs(real[:, 0]).max(initial=0) > LATEST:
+        what = "counts the points" if counts else f"holds {real[0, 0]:.10g}, as times are"
+        raise PrunusError(
+            f"{path}: the first of {rows.shape[1]} columns {what}; expected x, y, z first, or the "
+            "names of all columns"
+        )
 
 
 def are_colours(values: Floats) -> bool:

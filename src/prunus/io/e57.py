@@ -43,6 +43,8 @@ def read_e57(content: bytes, path: Path) -> Content:
     colours = [rgb for (_, rgb), _ in scans if rgb is not None]
     rgb = np.concatenate(colours) if len(colours) == len(scans) else None
     notes = [f"{len(scans)} scans joined by their poses"] if len(scans) > 1 else []
+    if any(COLOURS[0] in header.point_fields for header in headers) and not colours:
+        notes.append("no colours: they are no bytes")
     invalid = sum(lost for _, lost in scans)
     if invalid:
         notes.append(f"{invalid} of {invalid + len(xyz)} points are marked as invalid and left out")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from prunus.errors import PrunusError
 from prunus.io.numpyfiles import npy_array
-from prunus.io.safely import read_bytes, refusing
+from prunus.io.safely import parsing, read_bytes
 from prunus.model import Bools, Floats
 from prunus.model.arrays import Bytes
 
@@ -52,7 +52,7 @@ def _image(path: Path, deep: bool = False) -> Image:
 
 
 def _npy(content: bytes, path: Path) -> Image:
-    with refusing(path, "NPY file"):
+    with parsing(path, "NPY file"):
         image = npy_array(content)
     return image.astype(image.dtype.newbyteorder("="))
 
@@ -64,7 +64,7 @@ def _pillow(content: bytes, path: Path, deep: bool) -> Image:
         raise PrunusError(
             f"{path}: images other than NPY need Pillow; expected pip install 'prunus[fuse]'"
         ) from error
-    with refusing(path, "image"), Pillow.open(io.BytesIO(content)) as image:
+    with parsing(path, "image"), Pillow.open(io.BytesIO(content)) as image:
         if not deep:
             return np.asarray(image if image.mode in GREY else image.convert("RGB"))
         steps = np.asarray(image)

@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from prunus.errors import PrunusError
 from prunus.io.jsonl import append_line, read_lines_of
 from prunus.io.skeletons import InputRecord, Point
+from prunus.io.units import Unit
 
 Category = Literal["trunk", "support", "leader", "side_branch", "other"]
 CATEGORIES: tuple[Category, ...] = ("trunk", "support", "leader", "side_branch", "other")
@@ -38,7 +39,7 @@ class LabelHead(BaseModel):
     params: dict[str, Any]
     seed: int = Field(ge=0)
     frame: str
-    unit: Literal["m", "cm", "mm"] | None = None
+    unit: Unit | None = None
     base: Point | None = None
     version_of_prunus: str | None = None
 

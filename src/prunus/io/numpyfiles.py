@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from prunus.errors import PrunusError
-from prunus.io.columns import Content, colour_bytes, columns_of
+from prunus.io.columns import Content, check_first, colour_bytes, columns_of
 from prunus.model.arrays import Floats
 
 MAGIC = b"\x93NUMPY"
@@ -66,7 +66,7 @@ def npy_array(content: bytes) -> NDArray[Any]:
     text = content[8 + size : begin].decode("latin-1" if content[6] < 3 else "utf-8")
     # Python 2 wrote its long integers as 3L.
     told = ast.literal_eval(re.sub(r"(?<=[0-9])L(?=[,)])", "", text))
-    if not isinstance(told, dict) or told.keys() < {"descr", "fortran_order", "shape"}:
+    if not isinstance(told, dict) or not told.keys() >= {"descr", "fortran_order", "shape"}:
         raise ValueError(f"the header is {text[:60]!r}")
     kind, shape = np.lib.format.descr_to_dtype(told["descr"]), told["shape"]
     if not isinstance(shape, tuple) or not all(type(length) is int for length in shape):
@@ -110,6 +110,7 @@ def _content(values: NDArray[Any], path: Path) -> Content:
         raise PrunusError(f"{path}: {found}: points across, it seems; expected (P, 3)")
     notes = []
     if columns > 3:
+        check_first(values.reshape(-1, columns), path)
         notes.append(f"{columns} columns without names: 1 to 3 are read as x, y, z")
     if values.shape == (3, 3):
         notes.append("3 x 3 numbers: each row is read as a point")

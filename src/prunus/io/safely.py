@@ -16,7 +16,7 @@ BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
 @contextlib.contextmanager
-def refusing(named: object, kind: str) -> Iterator[None]:
+def parsing(named: object, kind: str) -> Iterator[None]:
     """The one door to other people's parsers: whatever they raise becomes a PrunusError.
 
     `named` is what the file is called in the message, `kind` what it was taken for.

@@ -16,7 +16,7 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.io.ply import ply_bytes, read_ply, table_of
-from prunus.io.safely import read_bytes, refusing, write_bytes
+from prunus.io.safely import parsing, read_bytes, write_bytes
 from prunus.model import Floats, Ints, Kind, Skeleton
 
 
@@ -84,7 +84,7 @@ def _trees_bytes(trees: list[Skeleton]) -> bytes:
 
 def _read_trees(path: Path) -> list[Skeleton]:
     content = read_bytes(path)
-    with refusing(path, "file of true trees"), np.load(io.BytesIO(content)) as held:
+    with parsing(path, "file of true trees"), np.load(io.BytesIO(content)) as held:
         ends = np.cumsum(held["rows"])[:-1]
         names = ("xyz", "parent", "label", "radius")
         parts = [np.split(held[name], ends) for name in names]

@@ -20,6 +20,7 @@ from prunus.io.columns import (
     are_axes,
     are_colours,
     axes_among,
+    check_first,
     colour_bytes,
     colours_among,
     unit_among,
@@ -35,8 +36,6 @@ COUNT = re.compile(r"[0-9]{1,18}")
 NUMBER = re.compile(
     r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?|nan|inf(inity)?)", re.IGNORECASE
 )
-LATEST = 1e8
-"""A first column beyond is no coordinate of a survey, in metres or millimetres, but a time."""
 HEAD_BYTES = 2**16
 """What is looked at to see whether a file may be a cloud."""
 
@@ -97,7 +96,7 @@ def _layout(lines: list[str], path: Path) -> _Layout:
             continue
         if COUNT.fullmatch(line):
             counted = True
-        elif line.startswith(REMARKS):
+        elif line.startswith((*REMARKS, "sep=", "SEP=")) or _numbers_columns(lines, number):
             heads.append((line.lstrip("#/%;! \t"), True))
         else:
             named = any(_named_in(head, None) for head, _ in heads)
@@ -113,6 +112,14 @@ def _layout(lines: list[str], path: Path) -> _Layout:
     if odd is not None:
         _refuse(odd, path)
     raise PrunusError(f"{path}: holds no points; expected rows of numbers")
+
+
+def _numbers_columns(lines: list[str], number: int) -> bool:
+    """Whether a line holds 0, 1, 2, ... and the next one fractions: pandas' names of no names."""
+    words = _separator_of(lines[number].strip(), 3)[1]
+    places = [str(place) for place in range(len(words))]
+    following = next((line for line in lines[number + 1 :] if line.strip()), "")
+    return bool(words) and words in (places, ["", *places[:-1]]) and "." in following
 
 
 def _refuse(line: str, path: Path) -> None:
@@ -202,7 +209,7 @@ def _in_order(names: list[str], width: int) -> bool:
 def _rows(lines: list[str], layout: _Layout, path: Path) -> tuple[Floats, bool]:
     """The rows as numbers (P, C), NaN where words stand; and whether their decimals are commas."""
     body = _without_remarks("\n".join(lines[layout.first :]), layout.separator)
-    commas = layout.separator != "," and re.search("[0-9],[0-9]", body) is not None
+    commas = layout.separator != "," and "," in body and bool(re.search("[0-9],[0-9]", body))
     if commas and re.search("[0-9][.][0-9]", body) is None:
         body = body.replace(",", ".")
     if layout.separator == "," and not layout.names:
@@ -283,21 +290,10 @@ def _unnamed(rows: Floats, path: Path) -> Content:
     width = rows.shape[1]
     if width == 3:
         return Content(rows.copy())
-    _check_first(rows[:, 0], path)
+    check_first(rows, path)
     rgb, where = _colours(rows, path)
     note = f"{width} columns without names: 1 to 3 are read as x, y, z{where}"
     return Content(rows[:, :3].copy(), rgb, notes=[note])
-
-
-def _check_first(first: Floats, path: Path) -> None:
-    """That a first column without a name is neither the number of the point nor a time."""
-    counts = len(first) > 2 and bool((np.diff(first) == 1).all())
-    if counts or np.abs(first[np.isfinite(first)]).max(initial=0) > LATEST:
-        what = "counts the points" if counts else f"holds {first[0]:.10g}, as times are"
-        raise PrunusError(
-            f"{path}: the first column {what}; expected x, y, z first, or the names of all columns "
-            "in the first line"
-        )
 
 
 def _colours(rows: Floats, path: Path) -> tuple[Bytes | None, str]:

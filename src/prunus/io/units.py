@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from prunus.errors import PrunusError
 
+Unit = Literal["m", "cm", "mm", "ft", "us-ft", "in"]
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "us-ft": 1200 / 3937, "in": 0.0254}
 """Metres in one unit."""
 

@@ -80,7 +80,7 @@ def report_page(
 <div class="room"><div><div id="scene"></div>
 <p class="quiet">Drag turns, wheel zooms. Click a name in the list to show or hide it.
 House frame: X along the row, Y depth, Z up, metres, around the middle of the cloud; the files
-beside this page are in the frame of the input.</p>
+beside this page are in the axes of the input, in metres.</p>
 {"".join(f'<p class="quiet">{escape(note)}</p>' for note in notes)}
 {"" if plan is None else cuts_section(plan)}</div>
 <div>{labels_of(result)}{leaders_of(result)}
