@@ -108,7 +108,7 @@ def test_swc_opens_in_morphio_with_its_radii_and_labels(tmp_path: Path) -> None:
         ({"parent": [-1, 1]}, r"parent\[1\] is 1"),
         ({"nodes": [[0, 0], [1, 1]]}, r"nodes\.0"),
         ({"nodes": []}, "nodes: "),
-        ({"colour": "red"}, "colour: Extra inputs"),
+        ({"colour": "red"}, "colour: unknown field; expected one of branches, conf"),
     ],
 )
 def test_a_file_that_lies_is_refused_by_field(tmp_path: Path, change: dict, message: str) -> None:

@@ -8,11 +8,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
-from prunus.errors import PrunusError
-from prunus.io.safely import read_marked, write_bytes
+from prunus.io.safely import write_bytes
 from prunus.io.skeletons import InputRecord
+from prunus.reading import record_in
 
 Point = tuple[float, float, float]
 Positive = Annotated[float, Field(ge=0)]
@@ -100,10 +100,4 @@ def write_plan(path: str | Path, plan: PlanFile) -> None:
 
 def read_plan(path: str | Path) -> PlanFile:
     """The plan in a file; PrunusError naming file and field otherwise."""
-    path = Path(path)
-    try:
-        return PlanFile.model_validate_json(read_marked(path))
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"]) or "the file"
-        raise PrunusError(f"{path}: {where}: {first['msg']}") from error
+    return record_in(Path(path), PlanFile)
