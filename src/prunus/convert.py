@@ -11,13 +11,14 @@ import numpy as np
 from prunus.errors import OptionError, PrunusError, blaming_the_command
 from prunus.io.clouds import check_kind, read_cloud, write_cloud
 from prunus.io.cylinders import write_cylinders, write_treeqsm
-from prunus.io.export import write_graphml, write_ply, write_swc
+from prunus.io.export import write_graphml, write_ply
 from prunus.io.gltf import write_gltf
 from prunus.io.mtg import write_mtg
 from prunus.io.obj import write_obj
 from prunus.io.plans import read_plan
 from prunus.io.ros import facing, write_mcap
 from prunus.io.skeletons import EVIDENCE, read_record, read_skeleton, write_skeleton
+from prunus.io.swc import write_swc
 from prunus.io.treetext import write_treetext
 from prunus.model import Floats, Skeleton
 

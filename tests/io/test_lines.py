@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from prunus.errors import PrunusError
-from prunus.io.export import write_graphml, write_ply, write_swc
+from prunus.io.export import write_graphml, write_ply
 from prunus.io.lines import read_lines
 from prunus.io.skeletons import write_skeleton
+from prunus.io.swc import write_swc
 from tests.drawn import tree
 
 OBJ = """# two edges

@@ -5,7 +5,6 @@ PLY with edges, SWC, OBJ lines, GraphML with x, y, z; prunus's own files too.
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -15,9 +14,10 @@ from xml.etree import ElementTree
 import numpy as np
 
 from prunus.errors import PrunusError
-from prunus.io.ply import parse_rows, read_ply
+from prunus.io.ply import read_ply
 from prunus.io.safely import read_bytes
 from prunus.io.skeletons import read_record
+from prunus.io.swc import read_rows
 from prunus.model import Floats, Ints, Lines
 
 
@@ -46,15 +46,9 @@ def _from_json(path: Path) -> tuple[Floats, Ints]:
 
 def _from_swc(path: Path) -> tuple[Floats, Ints]:
     """Any SWC: types, several roots and any order are fine."""
-    rows = parse_rows(io.BytesIO(read_bytes(path)), path, columns=7)
-    ids, above = rows[:, 0].astype(np.int64), rows[:, 6].astype(np.int64)
-    row_of = {number: row for row, number in enumerate(ids.tolist())}
-    hung = np.flatnonzero(above >= 0)
-    missing = [number for number in above[hung].tolist() if number not in row_of]
-    if missing:
-        raise PrunusError(f"{path}: parent {missing[0]} is no row; expected the id of one")
-    parents = [row_of[number] for number in above[hung].tolist()]
-    return rows[:, 2:5], np.column_stack([np.array(parents, np.int64), hung])
+    rows = read_rows(path)
+    hung = np.flatnonzero(rows.parent >= 0)
+    return rows.xyz, np.column_stack([rows.parent[hung], hung])
 
 
 def _from_ply(path: Path) -> tuple[Floats, Ints]:
@@ -121,6 +115,7 @@ def _all(element: Any, name: str) -> list[Any]:
 READERS: dict[str, Callable[[Path], tuple[Floats, Ints]]] = {
     ".json": _from_json,
     ".swc": _from_swc,
+    ".eswc": _from_swc,
     ".ply": _from_ply,
     ".obj": _from_obj,
     ".graphml": _from_graphml,

@@ -177,7 +177,7 @@ def sha256_of(skeleton: Skeleton) -> str:
 
 def read_skeleton(path: str | Path) -> Skeleton:
     """The skeleton of a `skeleton.json`, or of an SWC file, by the ending."""
-    from prunus.io.export import read_swc
+    from prunus.io.swc import read_swc
 
     return read_swc(path) if Path(path).suffix.lower() == ".swc" else read_record(path)[0]
 
