@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import codecs
 import json
+import re
 import reprlib
 import tomllib
 from collections.abc import Iterator
@@ -57,6 +58,11 @@ def text_of(content: bytes, source: Path | str, *, lenient: bool = False) -> str
 def read_text(path: Path, *, lenient: bool = False) -> str:
     """The text of a file, as `text_of` has it."""
     return text_of(read_bytes(path), path, lenient=lenient)
+
+
+def lines_of(text: str) -> list[str]:
+    """The lines of a text, which end as files' lines do, and at no other sign."""
+    return re.split(r"\r\n|\n|\r", text)
 
 
 def read_toml(path: Path) -> dict[str, Any]:

@@ -16,7 +16,7 @@ import numpy as np
 from prunus.errors import PrunusError
 from prunus.io.safely import write_bytes
 from prunus.model import Floats, Ints, Label, Skeleton
-from prunus.reading import read_text, short
+from prunus.reading import lines_of, read_text, short
 
 TYPES = {Label.TRUNK: 16, Label.SUPPORT: 17, Label.LEADER: 18, Label.SIDE_BRANCH: 19}
 """SWC structure identifiers; those over 15 are free for such use."""
@@ -160,7 +160,7 @@ def _parents_first(parent: Ints) -> list[int]:
 def _table(text: str, path: Path) -> Iterator[tuple[int, list[str]]]:
     """The number of each line that is a row, and its seven words, in the order of `COLUMNS`."""
     order: list[int] | None = None
-    for line, whole in enumerate(re.split(r"\r\n|\n|\r", text), 1):
+    for line, whole in enumerate(lines_of(text), 1):
         content = whole.split("#", 1)[0].strip()
         if not content:
             continue
