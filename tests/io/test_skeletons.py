@@ -4,14 +4,13 @@ import json
 from pathlib import Path
 
 import jsonschema
-import networkx as nx
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from prunus.errors import PrunusError
-from prunus.io.export import write_graphml, write_ply
+from prunus.io.export import write_ply
 from prunus.io.ply import read_ply
 from prunus.io.skeletons import read_record, read_skeleton, write_skeleton
 from prunus.model import Skeleton
@@ -62,15 +61,6 @@ def test_ply_holds_coloured_edges_and_named_columns(tmp_path: Path) -> None:
     assert edges.tolist() == skeleton.edges.tolist()
     assert tables["vertex"]["label"].tolist() == skeleton.label.tolist()
     assert len(np.unique(tables["edge"][["red", "green", "blue"]])) == 4
-
-
-def test_graphml_opens_in_networkx(tmp_path: Path) -> None:
-    write_graphml(tmp_path / "s.graphml", tree())
-    graph = nx.read_graphml(tmp_path / "s.graphml")
-    assert graph.number_of_nodes() == len(tree())
-    assert graph.nodes["0"]["z"] == 0
-    assert "radius" not in graph.nodes["0"]
-    assert "confidence" not in graph.edges["0", "1"]
 
 
 @pytest.mark.parametrize(

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from prunus.io.ply import ply_bytes, table_of
 from prunus.io.safely import write_bytes
-from prunus.model import Floats, Label, Skeleton
+from prunus.model import Label, Skeleton
 
 COLOURS = {
     Label.TRUNK: (0, 0, 0),
@@ -19,45 +17,47 @@ COLOURS = {
 }
 """Red, green, blue of each label: Okabe and Ito's palette, which colour-blind people tell apart."""
 
+COLOUR_PROPERTIES = [f"property uchar {name}" for name in ("red", "green", "blue")]
+
 
 def write_ply(path: str | Path, skeleton: Skeleton) -> None:
-    """Coloured edges: opens in CloudCompare, MeshLab and Blender. Nodes keep label and radius.
+    """Coloured edges for MeshLab, Blender, Open3D and trimesh; nodes keep label and radius.
 
-    The colour of a node is that of its edge from the parent.
+    The colour of a node is that of its edge from the parent. Written as text: of a binary file
+    trimesh takes no edges that have colours, and Open3D no colours but those of edges.
     """
-    colour = np.array([COLOURS[Label(label)] for label in skeleton.label], np.uint8)
-    nodes: dict[str, Any] = {
-        **{name: skeleton.xyz[:, axis] for axis, name in enumerate("xyz")},
-        **{name: colour[:, c] for c, name in enumerate(("red", "green", "blue"))},
-        "label": skeleton.label.astype(np.uint8),
-        "radius": _zero_if_unknown(skeleton.radius),
-    }
-    edges: dict[str, Any] = {
-        "vertex1": skeleton.edges[:, 0].astype(np.int32),
-        "vertex2": skeleton.edges[:, 1].astype(np.int32),
-        **{name: colour[1:, c] for c, name in enumerate(("red", "green", "blue"))},
-    }
-    comments = [
-        "prunus skeleton; unit: metre; frame: that of the input file",
-        "label: " + ", ".join(f"{int(label)} = {label.word}" for label in Label),
+    colours = [COLOURS[Label(label)] for label in skeleton.label]
+    radius = np.nan_to_num(skeleton.radius, nan=0.0)
+    nodes = zip(skeleton.xyz.tolist(), colours, skeleton.label, radius.tolist(), strict=True)
+    edges = zip(skeleton.edges.tolist(), colours[1:], strict=True)
+    lines = [
+        "ply",
+        "format ascii 1.0",
+        "comment prunus skeleton; unit: metre; frame: that of the input file",
+        "comment label: " + ", ".join(f"{int(label)} = {label.word}" for label in Label),
+        f"element vertex {len(skeleton)}",
+        *(f"property double {axis}" for axis in "xyz"),
+        *COLOUR_PROPERTIES,
+        "property uchar label",
+        "property double radius",
+        f"element edge {len(skeleton) - 1}",
+        "property int vertex1",
+        "property int vertex2",
+        *COLOUR_PROPERTIES,
+        "end_header",
+        *(_row(*xyz, *colour, int(label), thick) for xyz, colour, label, thick in nodes),
+        *(_row(*ends, *colour) for ends, colour in edges),
     ]
-    tables = {"vertex": table_of(nodes), "edge": table_of(edges)}
-    write_bytes(Path(path), ply_bytes(tables, comments))
+    write_bytes(Path(path), ("\n".join(lines) + "\n").encode())
+
+
+def _row(*values: float) -> str:
+    return " ".join(map(repr, values))
 
 
 def write_graphml(path: str | Path, skeleton: Skeleton) -> None:
-    """GraphML with all that `Skeleton.to_networkx` holds: for yEd, Gephi, igraph, networkx.
-
-    What is unknown has no entry: readers do not agree on how NaN is written.
-    """
+    """GraphML with all that `Skeleton.to_networkx` holds: for yEd, Gephi, igraph, networkx."""
     import networkx as nx
 
-    graph = skeleton.to_networkx()
-    for *_, columns in (*graph.nodes(data=True), *graph.edges(data=True)):
-        for name in [name for name, value in columns.items() if value != value]:
-            del columns[name]
-    write_bytes(Path(path), "\n".join(nx.generate_graphml(graph)).encode())
-
-
-def _zero_if_unknown(radius: Floats) -> Floats:
-    return np.nan_to_num(radius, nan=0.0)
+    text = "\n".join(nx.generate_graphml(skeleton.to_networkx()))
+    write_bytes(Path(path), text.encode())

@@ -40,7 +40,10 @@ class InputRecord(_Record):
 class BranchName(_Record):
     """A branch and how it is called."""
 
-    name: str = Field(description="as in the report: leader 3 is the third from the left")
+    name: str = Field(
+        pattern=r"^[\w ]{1,80}$",
+        description="as in the report: leader 3 is the third from the left",
+    )
     label: Word
     nodes: list[Row] = Field(description="along it, from the node at which it leaves its parent")
 
