@@ -6,13 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from prunus.batch import Options, Task, do
 from prunus.cutting import Source, cut_file, lines_of
 from prunus.errors import PrunusError
 from prunus.io.clouds import write_cloud
-from prunus.io.plans import PlanFile
-from prunus.io.skeletons import read_record, write_skeleton
+from prunus.io.plans import PlanFile, write_plan
+from prunus.io.skeletons import read_record, read_skeleton, sha256_of, write_skeleton
+from prunus.io.swc import write_swc
 from prunus.measure.cuts import shipped_rules
 from prunus.model import FRAMES, RigidMotion
 from prunus.params import Parameters
@@ -122,22 +124,131 @@ def test_bad_rules_are_one_clear_line(folder: Path, tmp_path: Path) -> None:
     assert "mine.toml: side_branches.longer: unknown" in done.stderr
 
 
-def test_a_plan_goes_into_a_bag_as_poses(folder: Path, plan: PlanFile, tmp_path: Path) -> None:
+def poses_in(bag: Path, topic: str) -> list[tuple[float, float, float]]:
+    """The places in a topic of poses."""
     from rosbags.highlevel import AnyReader
 
-    from prunus.io.plans import write_plan
+    with AnyReader([bag]) as opened:
+        ((_, _, raw),) = opened.messages([c for c in opened.connections if c.topic == topic])
+        poses = opened.deserialize(raw, "geometry_msgs/msg/PoseArray").poses
+    return [(p.position.x, p.position.y, p.position.z) for p in poses]
 
-    write_plan(tmp_path / "plan.json", plan)
+
+def with_one_for_the_machine(plan: PlanFile) -> PlanFile:
+    first = plan.cuts[0].model_copy(update={"needs_review": False, "reasons": []})
+    return plan.model_copy(update={"cuts": [first, *plan.cuts[1:]]})
+
+
+def test_a_plan_goes_into_a_bag_those_to_be_looked_at_apart(
+    folder: Path, plan: PlanFile, tmp_path: Path
+) -> None:
+    write_plan(tmp_path / "plan.json", with_one_for_the_machine(plan))
     words = ["convert", folder / "out" / "refined.json"]
     done = prunus(*words, tmp_path / "tree.mcap", "--cuts", tmp_path / "plan.json")
     assert done.exit_code == 0, done.output
-    with AnyReader([tmp_path / "tree.mcap"]) as bag:
-        ((_, _, raw),) = bag.messages([c for c in bag.connections if c.topic == "/cuts"])
-        poses = bag.deserialize(raw, "geometry_msgs/msg/PoseArray").poses
-    places = [(p.position.x, p.position.y, p.position.z) for p in poses]
-    assert places == [cut.point for cut in plan.cuts]
+    looked = len(plan.cuts) - 1
+    assert f"{looked + 1} cuts, {looked} of them in /cuts/review" in done.stderr
+    assert poses_in(tmp_path / "tree.mcap", "/cuts") == [plan.cuts[0].point]
+    rest = [cut.point for cut in plan.cuts[1:]]
+    assert poses_in(tmp_path / "tree.mcap", "/cuts/review") == rest
     done = prunus(*words, tmp_path / "tree.glb", "--cuts", tmp_path / "plan.json")
     assert done.exit_code == 2 and "tree.glb: holds no cuts" in done.stderr
+
+
+def into_bag(source: Path, plan: PlanFile, home: Path) -> str:
+    """What is said where a plan is put into a bag with a skeleton: nothing where it is refused."""
+    home.mkdir(exist_ok=True)
+    write_plan(home / "plan.json", plan)
+    done = prunus("convert", source, home / "tree.mcap", "--cuts", home / "plan.json")
+    assert (done.exit_code == 0) == (home / "tree.mcap").exists()
+    if done.exit_code:
+        said = done.stderr
+        assert str(home / "plan.json") in said and str(source) in said, "both are named"
+        assert "another skeleton" in said and said.count("\n") == 1
+        return ""
+    return done.stderr
+
+
+@pytest.mark.parametrize("planned_on", ["tree.ply", "out/skeleton.json", "out/refined.json"])
+@pytest.mark.parametrize("shown_with", ["out/skeleton.json", "out/refined.json"])
+def test_a_plan_belongs_to_its_skeleton_rough_and_refined(
+    planned_on: str, shown_with: str, folder: Path, tmp_path: Path
+) -> None:
+    base = (0.0, 0.0, 0.0) if planned_on == "tree.ply" else None
+    made = cut_file(Source(folder / planned_on, base), RULES)
+    assert made.skeleton_sha256 == sha256_of(read_skeleton(folder / "out" / "skeleton.json"))
+    assert "to be looked at" in into_bag(folder / shown_with, made, tmp_path)
+
+
+def test_where_a_skeleton_is_kept_does_not_matter_but_where_its_nodes_are(
+    folder: Path, plan: PlanFile, tmp_path: Path
+) -> None:
+    skeleton, record = read_record(folder / "out" / "skeleton.json")
+    write_swc(tmp_path / "same.swc", skeleton)
+    text = (folder / "out" / "skeleton.json").read_text()
+    (tmp_path / "same.json").write_text(json.dumps(json.loads(text), indent=3))
+    for name in ("same.swc", "same.json"):
+        assert into_bag(tmp_path / name, plan, tmp_path / "a")
+        (tmp_path / "a" / "tree.mcap").unlink()
+    moved = skeleton.xyz.copy()
+    moved[-1] += 0.001
+    label = skeleton.label.copy()
+    label[-1] = (label[-1] + 1) % 4
+    kept = np.arange(len(skeleton)) < len(skeleton) - 1
+    others = [replace(skeleton, xyz=moved), replace(skeleton, label=label), skeleton.part(kept)]
+    for other in others:
+        write_skeleton(tmp_path / "corrected.json", other, input=record.input)
+        assert not into_bag(tmp_path / "corrected.json", plan, tmp_path / "b")
+
+
+def test_the_plan_of_another_tree_is_refused(folder: Path, plan: PlanFile, tmp_path: Path) -> None:
+    write_skeleton(tmp_path / "other.json", drawn())
+    other = cut_file(Source(tmp_path / "other.json"), RULES)
+    assert not into_bag(folder / "out" / "skeleton.json", other, tmp_path / "a")
+    assert not into_bag(folder / "out" / "refined.json", other, tmp_path / "b")
+    assert not into_bag(tmp_path / "other.json", plan, tmp_path / "c")
+    assert into_bag(tmp_path / "other.json", other, tmp_path / "d")
+
+
+def test_an_old_plan_goes_by_its_scan(folder: Path, plan: PlanFile, tmp_path: Path) -> None:
+    old = plan.model_copy(update={"skeleton_sha256": None})
+    assert "does not say of which skeleton" in into_bag(
+        folder / "out" / "refined.json", old, tmp_path / "a"
+    )
+    assert plan.input is not None
+    scan = plan.input.model_copy(update={"sha256": "0" * 64})
+    other = old.model_copy(update={"input": scan})
+    assert not into_bag(folder / "out" / "refined.json", other, tmp_path / "b")
+
+
+def test_a_refined_skeleton_keeps_the_names_that_the_report_gave(
+    folder: Path, tmp_path: Path
+) -> None:
+    _, record = read_record(folder / "out" / "skeleton.json")
+    fine, told = read_record(folder / "out" / "refined.json")
+    assert record.trust is not None and told.branches is not None
+    names = [branch.name for branch in record.trust.branches]
+    assert sorted(branch.name for branch in told.branches) == sorted(names)
+    swapped = {"leader 1": "leader 2", "leader 2": "leader 1"}
+    branches = [
+        branch.model_copy(update={"name": swapped.get(branch.name, branch.name)})
+        for branch in told.branches
+    ]
+    write_skeleton(tmp_path / "refined.json", fine, branches=branches, input=told.input)
+    for name, source in {"own": folder / "out", "swapped": tmp_path}.items():
+        prunus("convert", source / "refined.json", tmp_path / f"{name}.glb")
+    own, other = (trimesh.load(tmp_path / f"{name}.glb").geometry for name in ("own", "swapped"))
+    assert set(own) == set(names)
+    assert own["leader 1"].bounds.tolist() == other["leader 2"].bounds.tolist()
+    assert own["leader 1"].bounds.tolist() != other["leader 1"].bounds.tolist()
+    plan = cut_file(Source(tmp_path / "refined.json", scans=folder), RULES)
+    usual = cut_file(Source(folder / "out" / "refined.json"), RULES)
+    named = {cut.point: cut.branch for cut in plan.cuts}
+    assert named == {c.point: swapped.get(c.branch, c.branch) for c in usual.cuts}
+    left = {one.branch: one.why for one in plan.left if one.rule == "height"}
+    assert left["leader 1"] == next(
+        one.why for one in usual.left if (one.rule, one.branch) == ("height", "leader 2")
+    )
 
 
 def test_a_corrected_skeleton_with_points_of_its_own_is_planned_too(

@@ -27,7 +27,7 @@ FLOORS = [
     {"result"},
     {"sensing", "search", "stages", "measure", "io"},
     {"rules", "grammar", "params", "kernels"},
-    {"model"},
+    {"model", "reading"},
     {"errors"},
 ]
 """From the roof down. A room may use rooms on lower floors, and those named in SAME_FLOOR."""

@@ -9,8 +9,9 @@ import pytest
 from typer.testing import CliRunner
 
 from prunus.cli import app
-from prunus.io.export import write_ply, write_swc
+from prunus.io.export import write_ply
 from prunus.io.skeletons import write_skeleton
+from prunus.io.swc import write_swc
 from tests.drawn import TREE, tree
 
 RUN = CliRunner()

@@ -13,11 +13,13 @@ from typing import Any
 from prunus import __version__
 from prunus.errors import PrunusError
 from prunus.intake import Scan, open_scan
-from prunus.io.export import write_ply, write_swc
+from prunus.io.export import write_ply
 from prunus.io.inputs import clouds_in, is_one, names_of
+from prunus.io.names import named_branches
 from prunus.io.records import EdgesByLabel, TreeRecord
 from prunus.io.safely import write_bytes
-from prunus.io.skeletons import write_skeleton
+from prunus.io.skeletons import sha256_of, write_skeleton
+from prunus.io.swc import write_swc
 from prunus.io.tables import csv_bytes, parquet_bytes, without_nan
 from prunus.io.trust import trust_record
 from prunus.kernels.compiled import is_compiled, mark_compiled
@@ -180,7 +182,14 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
     write_skeleton(
         folder / "skeleton.json", result.skeleton, trust=trust, review=result.review, **evidence
     )
-    write_skeleton(folder / "refined.json", fine, **evidence)
+    names = named_branches(fine, result.refined.names)
+    write_skeleton(
+        folder / "refined.json",
+        fine,
+        branches=names,
+        refines=sha256_of(result.skeleton),
+        **evidence,
+    )
 
 
 def write_traits(folder: Path, result: Result, name: str) -> list[str]:

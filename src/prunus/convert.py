@@ -5,21 +5,31 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from prunus.errors import OptionError, PrunusError, blaming_the_command
 from prunus.io.clouds import check_kind, read_cloud, write_cloud
 from prunus.io.cylinders import write_cylinders, write_treeqsm
-from prunus.io.export import write_graphml, write_ply, write_swc
+from prunus.io.dxf import write_dxf
+from prunus.io.export import write_graphml, write_ply
 from prunus.io.gltf import write_gltf
 from prunus.io.mtg import write_mtg
 from prunus.io.obj import write_obj
-from prunus.io.plans import read_plan
-from prunus.io.ros import facing, write_mcap
-from prunus.io.skeletons import EVIDENCE, read_record, read_skeleton, write_skeleton
+from prunus.io.plans import check_belongs, read_plan
+from prunus.io.ros import CutPoses, facing, write_mcap
+from prunus.io.skeletons import (
+    EVIDENCE,
+    SkeletonFile,
+    read_record,
+    read_skeleton,
+    write_skeleton,
+)
+from prunus.io.swc import write_swc
 from prunus.io.treetext import write_treetext
 from prunus.model import Floats, Skeleton
+from prunus.model.arrays import Bytes
 
 THIN = 0.005
 """Metres: the radius of tubes and cylinders where it is unknown."""
@@ -30,13 +40,14 @@ class Format:
     """A kind of file for skeletons: how it is written, what it has no place for, what it needs.
 
     Tubes and cylinders need an edge and a radius. `remark`: what is there in another way than one
-    expects.
+    expects. `names_branches`: it is written with their names.
     """
 
-    write: Callable[[Path, Skeleton], None]
+    write: Callable[..., None]
     lacks: tuple[str, ...] = ("confidence", "superpoint")
     needs: tuple[str, ...] = ("edge", "radius")
     remark: str = ""
+    names_branches: bool = False
 
 
 NAMES_ONLY = "labels are but the names of meshes and materials"
@@ -44,13 +55,25 @@ FORMATS: dict[str, Format] = {
     ".json": Format(write_skeleton, (), ()),
     ".swc": Format(write_swc, needs=(), remark="labels are types 16 to 19; an unknown radius is 0"),
     ".ply": Format(write_ply, needs=(), remark="an unknown radius is 0"),
+    ".dxf": Format(
+        write_dxf,
+        ("confidence", "superpoint", "radius"),
+        ("edge",),
+        "labels are layers and colours",
+    ),
     ".graphml": Format(write_graphml, (), ()),
-    ".glb": Format(write_gltf, remark=NAMES_ONLY),
-    ".gltf": Format(write_gltf, remark=NAMES_ONLY),
-    ".obj": Format(write_obj, remark=NAMES_ONLY),
-    ".mtg": Format(write_mtg, ("superpoint",), ("edge",), "labels are the classes T, S, L, B"),
+    ".glb": Format(write_gltf, remark=NAMES_ONLY, names_branches=True),
+    ".gltf": Format(write_gltf, remark=NAMES_ONLY, names_branches=True),
+    ".obj": Format(write_obj, remark=NAMES_ONLY, names_branches=True),
+    ".mtg": Format(
+        write_mtg, ("superpoint",), ("edge",), "labels are the classes T, S, L, B", True
+    ),
     ".cylinders.csv": Format(write_cylinders, ("superpoint",)),
-    ".treeqsm.csv": Format(write_treeqsm, remark="no mad, no SurfCov: nothing was fitted"),
+    ".treeqsm.csv": Format(
+        write_treeqsm,
+        ("confidence", "superpoint", "label"),
+        remark="no mad, no SurfCov: nothing was fitted",
+    ),
     ".txt": Format(write_treetext, remark="the tree text of raycloudtools; labels are 0 to 3"),
     ".mcap": Format(write_mcap, remark="labels are the namespaces of the markers"),
 }
@@ -78,40 +101,63 @@ def convert_file(
     for name, path in (("cloud", cloud), ("cuts", cuts)):
         if path is not None and kind != ".mcap":
             raise OptionError(f"{target}: holds no {name}; expected a bag (.mcap)")
-    if kind == ".json" == source.suffix.lower():
-        skeleton, record = read_record(source)
+    skeleton, record = _skeleton_in(source)
+    if kind == ".json" and record is not None:
         write_skeleton(target, skeleton, **record.model_dump(include=EVIDENCE))
         return []
-    skeleton = read_skeleton(source)
-    notes, needs = notes_on(skeleton, FORMATS[kind]), FORMATS[kind].needs
-    if "edge" in needs and len(skeleton) == 1:
+    form = FORMATS[kind]
+    if "edge" in form.needs and len(skeleton) == 1:
         raise PrunusError(f"{source}: holds a base alone; expected at least one edge")
-    if "radius" in needs:
+    notes, more = notes_on(skeleton, form), list[Any]()
+    if kind == ".mcap":
+        points, said = _points_in(cloud, unit)
+        poses, told = _cuts_in(cuts, source, skeleton, record)
+        notes, more = [*notes, *said, *told], [points, poses]
+    elif form.names_branches:
+        more = [{} if record is None else record.named]
+    if "radius" in form.needs:
         skeleton = skeleton.with_radius(np.nan_to_num(skeleton.radius, nan=THIN))
-    if kind != ".mcap":
-        FORMATS[kind].write(target, skeleton)
-        return notes
-    points = None
-    if cloud is not None:
-        with blaming_the_command():
-            held = read_cloud(cloud, unit)
-        points = held.xyz, held.rgb
-        notes += _rounding(held.xyz)
-    write_mcap(target, skeleton, points, None if cuts is None else _poses(cuts))
+    form.write(target, skeleton, *more)
     return notes
 
 
-def _poses(plan: Path) -> tuple[Floats, Floats]:
-    """Places (C, 3) and orientations (C, 4) of the cuts in a plan: Z the blade's normal, X the way.
+def _skeleton_in(source: Path) -> tuple[Skeleton, SkeletonFile | None]:
+    """A skeleton, and what its file says beside it, if that is one of ours."""
+    if source.suffix.lower() == ".json":
+        return read_record(source)
+    return read_skeleton(source), None
 
-    Where no way is known, X lies anywhere.
-    """
+
+def _points_in(
+    cloud: Path | None, unit: str | None
+) -> tuple[tuple[Floats, Bytes | None] | None, list[str]]:
+    """The points and colours of a cloud, and what is to be said of them."""
+    if cloud is None:
+        return None, []
     with blaming_the_command():
-        cuts = read_plan(plan).cuts
-    places = np.array([cut.point for cut in cuts]).reshape(-1, 3)
-    normal = np.array([cut.blade_normal for cut in cuts]).reshape(-1, 3)
-    way = np.array([cut.approach.direction if cut.approach else (0, 0, 0) for cut in cuts])
-    return places, facing(normal, way.reshape(-1, 3))
+        held = read_cloud(cloud, unit)
+    return (held.xyz, held.rgb), _rounding(held.xyz)
+
+
+def _cuts_in(
+    path: Path | None, source: Path, skeleton: Skeleton, record: SkeletonFile | None
+) -> tuple[CutPoses | None, list[str]]:
+    """The poses of a plan, which must be that of the skeleton, and what is to be said of them.
+
+    Z is the blade's normal, X the way, or anywhere square to it where no way is known.
+    """
+    if path is None:
+        return None, []
+    with blaming_the_command():
+        plan = read_plan(path)
+        notes = check_belongs(plan, path, skeleton, record, source)
+    places = np.array([cut.point for cut in plan.cuts]).reshape(-1, 3)
+    normal = np.array([cut.blade_normal for cut in plan.cuts]).reshape(-1, 3)
+    way = [cut.approach.direction if cut.approach else (0, 0, 0) for cut in plan.cuts]
+    turns = facing(normal, np.array(way).reshape(-1, 3))
+    review = np.array([cut.needs_review for cut in plan.cuts], np.bool_)
+    looked = f"{len(review)} cuts, {int(review.sum())} of them in /cuts/review, to be looked at"
+    return CutPoses([cut.id for cut in plan.cuts], places, turns, review), [*notes, looked]
 
 
 def kind_of(target: Path) -> str:
@@ -130,6 +176,8 @@ def notes_on(skeleton: Skeleton, form: Format) -> list[str]:
     known = {
         "confidence": np.isfinite(skeleton.confidence).any(),
         "superpoint": (skeleton.superpoint >= 0).any(),
+        "radius": np.isfinite(skeleton.radius).any(),
+        "label": True,
     }
     lost = [name for name in form.lacks if known[name]]
     notes = [f"left out, as there is no place for it: {', '.join(lost)}"] if lost else []

@@ -12,9 +12,10 @@ import numpy as np
 from prunus import __version__
 from prunus.errors import PrunusError
 from prunus.intake import Scan, open_scan
+from prunus.io.names import names_of
 from prunus.io.original import original_of
 from prunus.io.plans import PlanFile
-from prunus.io.skeletons import InputRecord, read_record, read_skeleton
+from prunus.io.skeletons import InputRecord, read_record, read_skeleton, sha256_of
 from prunus.kernels.neighbours import within
 from prunus.measure.cuts import Cut, CutRules, Plan, plan_cuts
 from prunus.measure.cuts.plan import as_it_is
@@ -79,32 +80,38 @@ def cut_file(source: Source, rules: CutRules) -> PlanFile:
     result = skeletonize(scan.cloud, source.base, source.params, source.seed, source.scorer)
     plan = plan_cuts(result.refined, scan.cloud.xyz, rules)
     notes = [*scan.notes, *result.notes, *result.review]
-    return plan_file(plan, scan.cloud.to_input, input=scan.record, notes=notes)
+    told = {"skeleton_sha256": sha256_of(result.skeleton), "input": scan.record, "notes": notes}
+    return plan_file(plan, scan.cloud.to_input, **told)
 
 
 def _on_skeleton(source: Source, rules: CutRules) -> PlanFile:
-    path, notes, record = source.path, list[str](), None
+    path, record = source.path, None
     if path.suffix.lower() == ".json":
-        skeleton, told = read_record(path)
-        record, notes = told.input, list(told.review or ())
+        skeleton, record = read_record(path)
     else:
         skeleton = read_skeleton(path)
+    notes = [] if record is None else list(record.review or ())
+    sha256 = (record and record.refines) or sha256_of(skeleton)
+    told: dict[str, Any] = {"skeleton": path.name, "skeleton_sha256": sha256, "notes": notes}
+    named = None if record is None else record.named
     scan = None
     try:
-        scan = _scan_of(source, record)
+        scan = _scan_of(source, None if record is None else record.input)
     except PrunusError as error:
         if source.scans is not None:
             raise
         notes.append(f"no cloud: {error}")
     if scan is None:
         to_file = RigidMotion(_upright(skeleton, source.frame), np.zeros(3)).inverse()
-        plan = plan_cuts(skeleton.moved(to_file.inverse()), None, rules)
-        return plan_file(plan, to_file, skeleton=path.name, notes=notes)
+        in_house = skeleton.moved(to_file.inverse())
+        plan = plan_cuts(in_house, None, rules, names_of(in_house, named or {}))
+        return plan_file(plan, to_file, **told)
     cloud = scan.cloud
     in_house = skeleton.moved(cloud.to_input.inverse())
-    plan = plan_cuts(_refined(in_house, cloud), cloud.xyz, rules)
+    tree, names = _refined(in_house, cloud), names_of(in_house, named or {})
+    plan = plan_cuts(tree, cloud.xyz, rules, names)
     notes += scan.notes
-    return plan_file(plan, cloud.to_input, skeleton=path.name, input=scan.record, notes=notes)
+    return plan_file(plan, cloud.to_input, input=scan.record, **told)
 
 
 def _scan_of(source: Source, record: InputRecord | None) -> Scan:

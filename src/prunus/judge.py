@@ -11,11 +11,11 @@ from prunus.errors import PrunusError
 from prunus.evaluate.curves import curve_measures, line_measures
 from prunus.evaluate.edits import edits, label_ratios, on_same_nodes
 from prunus.evaluate.found import branch_measures
-from prunus.io.lines import READERS, read_lines
+from prunus.io.lines import READERS, checked_length, read_lines
 from prunus.io.records import PairRecord
 from prunus.io.skeletons import read_skeleton
 from prunus.io.tables import without_nan
-from prunus.model import Label, Skeleton
+from prunus.model import Label, Lines, Skeleton
 
 Record = dict[str, Any]
 
@@ -101,14 +101,16 @@ def strangers(records: list[Record]) -> list[str]:
 
 def _labelled(path: Path) -> Skeleton | None:
     """The skeleton of a file of ours; None where another tool wrote it."""
-    if path.suffix.lower() == ".json":
-        return read_skeleton(path)
-    if path.suffix.lower() != ".swc":
+    if path.suffix.lower() not in (".json", ".swc"):
         return None
     try:
-        return read_skeleton(path)
+        skeleton = read_skeleton(path)
     except PrunusError:
-        return None
+        if path.suffix.lower() == ".swc":
+            return None
+        raise
+    checked_length(Lines(skeleton.xyz, skeleton.edges), path)
+    return skeleton
 
 
 def spread_lines(records: list[Record]) -> list[str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import operator
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -15,13 +14,13 @@ from pydantic import (
     BaseModel,
     ConfigDict,
     Field,
-    ValidationError,
     ValidationInfo,
     field_validator,
     model_validator,
 )
 
 from prunus.errors import PrunusError
+from prunus.reading import in_words, read_toml
 
 PI = math.pi
 
@@ -34,7 +33,11 @@ def _number(default: Any, symbol: str, unit: str, about: str, **limits: Any) -> 
 
 class _Group(BaseModel):
     model_config = ConfigDict(
-        frozen=True, extra="forbid", allow_inf_nan=False, revalidate_instances="always"
+        frozen=True,
+        extra="forbid",
+        strict=True,
+        allow_inf_nan=False,
+        revalidate_instances="always",
     )
 
     @field_validator("*", mode="before")
@@ -207,10 +210,8 @@ class Parameters(_Group):
 
     def __init__(self, **groups: Any) -> None:
         """The groups as such, or as dicts; PrunusError naming the field otherwise."""
-        try:
+        with in_words("params", type(self), noun="parameter"):
             super().__init__(**groups)
-        except ValidationError as error:
-            raise PrunusError(f"params: {_first_problem(error)}") from error
 
     @classmethod
     def paper(cls) -> Parameters:
@@ -229,23 +230,17 @@ class Parameters(_Group):
         """Parameters from nested dicts, or checked again; PrunusError naming source and field."""
         if isinstance(values, Mapping):
             values = {str(name): group for name, group in values.items()}
-        try:
+        with in_words(source, cls, noun="parameter"):
             return cls.model_validate(values)
-        except ValidationError as error:
-            raise PrunusError(f"{source}: {_first_problem(error)}") from error
 
     @classmethod
     def from_toml(cls, path: str | Path) -> Parameters:
         """Parameters from a TOML file; what it does not name keeps its default."""
         try:
-            values = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
-        except OSError as error:
-            raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
+            path = Path(path)
         except TypeError as error:
             raise PrunusError(f"params: {path!r}; expected the name of a file") from error
-        except ValueError as error:
-            raise PrunusError(f"{path}: not a TOML file: {error}") from error
-        return cls.parse(values, str(path))
+        return cls.parse(read_toml(path), str(path))
 
     def changed(self, group: str, **values: Any) -> Parameters:
         """The same parameters with some values of one group replaced."""
@@ -293,24 +288,3 @@ def _about(field: Any) -> str:
     )
     parts = [extra["symbol"], f"[{extra['unit']}]", limits]
     return " ".join(part for part in parts if part) + f": {field.description}"
-
-
-def _first_problem(error: ValidationError) -> str:
-    first = error.errors()[0]
-    told = first.get("ctx", {}).get("error")
-    if isinstance(told, PrunusError):
-        return str(told).removeprefix("params: ")
-    where = [str(part) for part in first["loc"][:2]]
-    name = ".".join(where)
-    if first["type"] == "extra_forbidden":
-        return f"{name}: unknown parameter; expected one of {', '.join(_known(where[:-1]))}"
-    message = first["msg"].removeprefix("Value error, ")
-    message = message[0].lower() + message[1:]
-    return f"{name}{': ' if name else ''}{message}; found {first['input']!r}"
-
-
-def _known(groups: list[str]) -> list[str]:
-    known: Any = Parameters
-    for group in groups:
-        known = known.model_fields[group].annotation
-    return sorted(known.model_fields)

@@ -100,7 +100,7 @@ def test_names_in_files_are_in_snake_case() -> None:
         ({"node": 3}, "unknown act None"),
         ({"act": "fly"}, "unknown act 'fly'; expected one of add_path"),
         ({"act": ["remove_edge"]}, "unknown act"),
-        ({"act": "remove_edge"}, "remove_edge.node: field required"),
+        ({"act": "remove_edge"}, "remove_edge.node: missing"),
         ({"act": "remove_edge", "node": -1}, "greater than or equal to 0; found -1"),
         ({"act": "remove_edge", "node": True}, "valid integer; found True"),
         ({"act": "remove_edge", "node": 1.0}, "valid integer; found 1.0"),

@@ -92,23 +92,23 @@ def test_a_torn_last_line_is_dropped_and_written_over(path: Path, cut: int) -> N
 @pytest.mark.parametrize(
     ("number", "text", "says"),
     [
-        (1, "{}", ":1: head.input: field required"),
+        (1, "{}", ":1: head.input: missing"),
         (1, '{"format": "other"}', ":1: head"),
         (1, json.dumps(HEAD.model_dump() | {"seed": "x"}), ":1: head.seed"),
         (1, json.dumps(HEAD.model_dump() | {"frame": "up"}), ":1: unknown frame 'up'"),
         (1, json.dumps(HEAD.model_dump() | {"params": {"x": 1}}), ":1: x: unknown parameter"),
-        (2, "what", ":2: not a line of JSON"),
-        (2, "[" * 100_000, ":2: not a line of JSON"),
+        (2, "what", ":2: not JSON"),
+        (2, "[" * 100_000, ":2: not JSON"),
         (2, "[1]", ":2: expected an object"),
         (2, '{"at": 3, "act": "undo"}', ":2: at: found 3"),
         (2, '{"at": "2026-01-01", "act": "undo"}', ":2: nothing to undo"),
         (3, '{"at": "2026-01-01", "act": "redo"}', ":3: nothing to redo"),
         (3, '{"at": "2026-01-01", "act": "undo", "node": 1}', ":3: unknown act 'undo'"),
         (2, '{"at": "2026-01-01", "act": "fly"}', ":2: unknown act 'fly'"),
-        (2, '{"at": "2026-01-01", "act": "remove_edge", "node": NaN}', ":2: not a line"),
+        (2, '{"at": "2026-01-01", "act": "remove_edge", "node": NaN}', ":2: not JSON"),
         (2, '{"at": "2026-01-01", "act": "remove_edge", "node": 1e400}', ":2: remove_edge.node"),
         (2, '{"at": "2026-01-01", "act": "remove_edge", "node": 1, "gives": 2}', ":2: gives"),
-        (4, "", ":4: not a line of JSON"),
+        (4, "", ":4: not JSON"),
     ],
 )
 def test_what_is_wrong_is_told_by_file_and_line(
@@ -123,7 +123,7 @@ def test_what_is_wrong_is_told_by_file_and_line(
 
 def test_binary_dirt_is_told_too(path: Path) -> None:
     path.write_bytes(b"\x00\xff\n" + path.read_bytes())
-    with pytest.raises(PrunusError, match=r":1: not a line of JSON"):
+    with pytest.raises(PrunusError, match=r":1: holds zero bytes"):
         read_journal(path)
 
 

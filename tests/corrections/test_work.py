@@ -304,7 +304,7 @@ def test_a_torn_last_line_costs_the_last_act(scan_file: Path, folder: Path, open
     [
         ('{"at": "2026-01-01", "act": "remove_edge", "node": 99999}', ":2: node 99999"),
         ('{"at": "2026-01-01", "act": "remove_edge", "node": -1}', ":2: remove_edge.node"),
-        ("nonsense", ":2: not a line of JSON"),
+        ("nonsense", ":2: not JSON"),
     ],
 )
 def test_a_corrupt_journal_is_told_and_left_alone(

@@ -1,17 +1,21 @@
 """Edges as cylinders: the tables of SimpleForest, TreeQSM and raycloudtools."""
 
 import csv
+from collections import Counter
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from prunus.io.cylinders import Cylinders, write_cylinders, write_treeqsm
 from prunus.io.treetext import write_treetext
 from prunus.model import Label, Skeleton
 from tests.drawn import tree
+from tests.io.test_skeletons import random_skeleton
 
 
 @pytest.fixture
@@ -51,6 +55,64 @@ def test_simpleforest_columns_hold_the_tree(skeleton: Skeleton, tmp_path: Path) 
             ]
     assert [row["ID"] for row in rows if row["parentID"] == "-1"] == ["0"]
     assert {row["confidence"] for row in rows} == {""}
+
+
+RTWIG = [
+    "ID", "parentID", "startX", "startY", "startZ", "endX", "endY", "endZ", "radius", "length",
+    "branchOrder", "branchID", "segmentID", "parentSegmentID",
+]  # fmt: skip
+"""What rTwig's update_cylinders() asks of a table of SimpleForest."""
+ARCHI = [
+    "radius", "length", "start.x", "start.y", "start.z", "axis.x", "axis.y", "axis.z", "parent",
+    "extension", "added", "UnmodRadius", "branch", "BranchOrder", "PositionInBranch",
+]  # fmt: skip
+"""The columns of TreeQSM in the order in which aRchi's read_QSM() names them anew."""
+
+
+def test_rtwig_and_archi_find_the_columns_that_they_ask_for(
+    skeleton: Skeleton, tmp_path: Path
+) -> None:
+    write_cylinders(tmp_path / "t.cylinders.csv", skeleton)
+    write_treeqsm(tmp_path / "t.treeqsm.csv", skeleton)
+    assert list(rows_of(tmp_path / "t.cylinders.csv")[0])[: len(RTWIG)] == RTWIG
+    rows = rows_of(tmp_path / "t.treeqsm.csv")
+    assert list(rows[0]) == ARCHI
+    for row in rows:
+        for column in ("parent", "extension", "added", "branch", "BranchOrder"):
+            assert row[column].isdigit()
+        for column in ("radius", "length", "axis.x", "UnmodRadius"):
+            assert np.isfinite(float(row[column]))
+
+
+@settings(deadline=None, max_examples=40)
+@given(seed=st.integers(0, 10_000))
+def test_a_segment_is_what_of_a_branch_lies_between_two_forks(
+    tmp_path_factory: pytest.TempPathFactory, seed: int
+) -> None:
+    skeleton = random_skeleton(seed)
+    if len(skeleton) == 1:
+        return
+    path = tmp_path_factory.mktemp("csv") / "t.cylinders.csv"
+    write_cylinders(path, skeleton)
+    rows = rows_of(path)
+    whole = [{name: int(row[name]) for name in RTWIG if "ID" in name} for row in rows]
+    on_it = Counter(row["parentID"] for row in whole)
+    for row in whole:
+        carrier = None if row["parentID"] < 0 else whole[row["parentID"]]
+        goes_on = (
+            carrier is not None
+            and on_it[row["parentID"]] == 1
+            and carrier["branchID"] == row["branchID"]
+        )
+        if goes_on:
+            assert carrier is not None and row["segmentID"] == carrier["segmentID"]
+        else:
+            assert sum(one["segmentID"] == row["segmentID"] for one in whole[: row["ID"]]) == 0
+            above = -1 if carrier is None else carrier["segmentID"]
+            assert row["parentSegmentID"] == above
+    assert sorted({row["segmentID"] for row in whole}) == list(
+        range(1 + max(row["segmentID"] for row in whole))
+    )
 
 
 def test_treeqsm_columns_chain_each_branch(skeleton: Skeleton, tmp_path: Path) -> None:

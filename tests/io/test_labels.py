@@ -72,7 +72,7 @@ def test_labels_of_another_graph_are_not_mixed(path: Path) -> None:
     [
         ("nonsense", "line 2: not JSON"),
         ("[1, 2]", "line 2: list; expected an object"),
-        ('{"edge": [1, 2], "valid": true}', "line 2: xyz: Field required"),
+        ('{"edge": [1, 2], "valid": true}', "line 2: xyz: missing"),
         ('{"edge": [2, 1], "xyz": [[0,0,0],[0,0,1]], "valid": true}', "expected .i, j."),
         ('{"edge": [1, 2], "xyz": [[0,0,0],[0,0,1]], "valid": true, "category": "root"}', "categ"),
         (

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from prunus.io.clouds import read_cloud
-from prunus.io.ros import facing, turned_from_z, write_mcap
+from prunus.io.ros import CutPoses, facing, turned_from_z, write_mcap
 from prunus.io.transforms import rotation
 from prunus.model import Label, Skeleton
 from tests.drawn import tree
@@ -57,12 +57,32 @@ def test_the_cloud_comes_back(skeleton: Skeleton, tmp_path: Path, coloured: bool
     assert rgb is None or (back.rgb == rgb).all()
 
 
-def test_cuts_are_poses(skeleton: Skeleton, tmp_path: Path) -> None:
-    turns = turned_from_z(np.array([[0, 0, 1.0], [0, 0, -1.0]]))
-    write_mcap(tmp_path / "t.mcap", skeleton, cuts=(np.array([[1, 2, 3], [4, 5, 6.0]]), turns))
-    poses = said(tmp_path / "t.mcap")["/cuts"].poses
-    assert [pose.position.x for pose in poses] == [1, 4]
-    assert [pose.orientation.w for pose in poses] == [1, 0]
+@pytest.mark.parametrize("review", [[], [True], [False], [False, True, True, False, True]])
+def test_every_cut_is_a_pose_in_the_topic_of_its_kind_and_has_its_id_there(
+    skeleton: Skeleton, tmp_path: Path, review: list[bool]
+) -> None:
+    places = np.arange(3.0 * len(review)).reshape(-1, 3)
+    ways = np.where(np.arange(len(review))[:, None] % 2, (0, 0, -1.0), (0, 0, 1.0))
+    ids = [f"spacing:leader-{number}" for number in range(len(review))]
+    cuts = CutPoses(ids, places, turned_from_z(ways.reshape(-1, 3)), np.array(review, bool))
+    write_mcap(tmp_path / "t.mcap", skeleton, cuts=cuts)
+    told = said(tmp_path / "t.mcap")
+    assert set(told) == {"/tree", "/cuts", "/cuts/review", "/cuts/ids"}
+    assert len(told["/cuts"].poses) == review.count(False)
+    assert len(told["/cuts/review"].poses) == review.count(True)
+    markers = told["/cuts/ids"].markers
+    assert [marker.text for marker in markers] == ids
+    for number, (marker, looked) in enumerate(zip(markers, review, strict=True)):
+        assert marker.ns == ("/cuts/review" if looked else "/cuts")
+        assert marker.type == marker.TEXT_VIEW_FACING and marker.scale.z > 0
+        pose = told[marker.ns].poses[marker.id]
+        assert [pose.position.x, pose.position.y, pose.position.z] == places[number].tolist()
+        assert pose.orientation.w == (0 if number % 2 else 1)
+
+
+def test_without_a_plan_there_is_no_topic_of_cuts(skeleton: Skeleton, tmp_path: Path) -> None:
+    write_mcap(tmp_path / "t.mcap", skeleton)
+    assert set(said(tmp_path / "t.mcap")) == {"/tree"}
 
 
 def test_the_same_tree_is_the_same_file(skeleton: Skeleton, tmp_path: Path) -> None:

@@ -1,8 +1,5 @@
 """A skeleton is a tree by construction, frozen, and a change is a new value."""
 
-from pathlib import Path
-
-import networkx
 import numpy as np
 import pytest
 
@@ -65,12 +62,7 @@ def test_networkx_holds_every_column() -> None:
     words = [data["label"] for _, _, data in graph.edges(data=True)]
     assert words.count("leader") == skeleton.edges_with(Label.LEADER).sum()
     assert [graph.nodes[0][axis] for axis in "xyz"] == skeleton.xyz[0].tolist()
-
-
-def test_networkx_writes_it_as_graphml(tmp_path: Path) -> None:
-    graph = tree().to_networkx()
-    networkx.write_graphml(graph, tmp_path / "tree.graphml")
-    assert networkx.read_graphml(tmp_path / "tree.graphml").number_of_nodes() == len(graph)
+    assert "radius" not in graph.nodes[0], "it is unknown"
 
 
 def test_words_and_labels_name_each_other() -> None:

@@ -11,11 +11,12 @@ from prunus.corrections import AddPath, Relabel, RemoveBranch, Settings, State, 
 from prunus.errors import PrunusError
 from prunus.io.clouds import write_cloud
 from prunus.io.plans import read_plan, write_plan
+from prunus.io.skeletons import read_skeleton, sha256_of
 from prunus.kernels.away import away_from
 from prunus.model import Label
 from prunus.pipeline import skeletonize
 from prunus.simulate import simulate_scan
-from prunus.studio.planned import PLAN, _vouched, file_of, planned, told_of_file
+from prunus.studio.planned import PLAN, _vouched, file_of, planned, save, told_of_file
 from prunus.studio.shelf import Item
 from prunus.studio.tree import Tree
 from tests.conftest import simulated
@@ -108,6 +109,31 @@ def test_whether_a_plan_was_saved_is_told(work: Work) -> None:
     assert told_of_file(path, later) == "plan.json is of the tree as it was before"
     path.write_text("no plan")
     assert told_of_file(path, later).startswith("cannot be read:")
+    save(path, later)
+    assert told_of_file(path, later) == "saved in plan.json"
+
+
+def test_the_plan_of_another_scan_is_named_and_kept(work: Work) -> None:
+    path = work.folder / PLAN
+    file = file_of(planned(work.state).plan, work)
+    assert file.input is not None
+    scan = file.input.model_copy(update={"file": "oak.ply", "sha256": "0" * 64})
+    other = file.model_copy(update={"input": scan})
+    write_plan(path, other)
+    words = "is the plan of another tree, skeleton.json of oak.ply; this is skeleton.json of elm"
+    assert words in told_of_file(path, file)
+    with pytest.raises(PrunusError, match=f"plan.json: {words}.*; move it away"):
+        save(path, file)
+    assert read_plan(path) == other
+
+
+def test_the_plan_names_the_skeleton_in_the_file_beside_it(work: Work) -> None:
+    file = file_of(planned(work.state).plan, work)
+    assert file.skeleton_sha256 == sha256_of(read_skeleton(work.folder / "skeleton.json"))
+    work.do(RemoveBranch(some(work, Label.SIDE_BRANCH)))
+    later = file_of(planned(work.state).plan, work)
+    assert later.skeleton_sha256 == sha256_of(read_skeleton(work.folder / "corrected.json"))
+    assert later.skeleton_sha256 != file.skeleton_sha256
 
 
 def test_points_that_are_not_the_tree_do_not_draw_it_aside(work: Work) -> None:

@@ -10,10 +10,9 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
 from prunus import __version__
-from prunus.corrections.wire import problem_in
 from prunus.errors import PrunusError
 from prunus.io.arrays import Arrays, finite, indices, read_arrays, shares, there, write_arrays
 from prunus.kernels.neighbours import within
@@ -30,6 +29,7 @@ from prunus.model import (
     Superpoints,
 )
 from prunus.params import Parameters
+from prunus.reading import json_of, record_of
 from prunus.result import Result
 from prunus.sensing.isolate import Isolated
 
@@ -96,10 +96,7 @@ class GraphFile:
 def read_graph(path: Path) -> GraphFile:
     """Read a file. Raises PrunusError where it is none."""
     arrays, told = read_arrays(path)
-    try:
-        record = GraphRecord.model_validate_json(told)
-    except ValidationError as error:
-        raise PrunusError(f"{path}: {problem_in('told', error)}") from error
+    record = record_of(GraphRecord, json_of(told, path), path, "told")
     turn = np.array(record.to_house)
     if not np.allclose(turn @ turn.T, np.eye(3), atol=1e-9) or np.linalg.det(turn) < 0:
         raise PrunusError(f"{path}: told.to_house: expected a rotation")

@@ -17,11 +17,10 @@ from io import FileIO
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict
 
 from prunus.corrections.acts import SetStatus, from_json, to_json
 from prunus.corrections.timeline import Line, Move, Timeline
-from prunus.corrections.wire import problem_in
 from prunus.errors import PrunusError
 from prunus.io.inputs import JOURNAL
 from prunus.io.safely import write_bytes
@@ -29,6 +28,7 @@ from prunus.io.skeletons import InputRecord
 from prunus.io.units import Unit
 from prunus.model.cloud import FRAMES
 from prunus.params import Parameters
+from prunus.reading import json_of, record_of, text_of
 
 NAME = JOURNAL
 Status = Literal["new", "in work", "done"]
@@ -100,25 +100,15 @@ def _is_whole(text: bytes) -> bool:
 
 
 def _object(path: Path, number: int, text: bytes) -> dict[str, Any]:
-    try:
-        held = json.loads(text, parse_constant=_no_number)
-    except (ValueError, RecursionError) as error:
-        raise PrunusError(f"{path}:{number}: not a line of JSON ({error})") from error
+    where = f"{path}:{number}"
+    held = json_of(text_of(text, where), where)
     if not isinstance(held, dict):
-        raise PrunusError(f"{path}:{number}: expected an object of JSON")
+        raise PrunusError(f"{where}: expected an object of JSON")
     return held
 
 
-def _no_number(text: str) -> float:
-    raise ValueError(f"{text} is no number")
-
-
 def _head(path: Path, text: bytes) -> Head:
-    held = _object(path, 1, text)
-    try:
-        head = Head.model_validate_json(json.dumps(held))
-    except ValidationError as error:
-        raise PrunusError(f"{path}:1: {problem_in('head', error)}") from error
+    head = record_of(Head, _object(path, 1, text), f"{path}:1", "head")
     if head.frame not in (*FRAMES, "auto"):
         raise PrunusError(f"{path}:1: unknown frame {head.frame!r}; expected auto, z-up, optical")
     Parameters.parse(head.params, f"{path}:1")

@@ -19,6 +19,7 @@ from pydantic import (
 )
 
 from prunus.model import Kind, Label
+from prunus.reading import problem_of, short
 
 Value = TypeVar("Value")
 
@@ -103,23 +104,7 @@ def read(value: Any, key: str, kinds: tuple[type[Value], ...]) -> Value:
     try:
         return cast(Value, _adapter(known[name]).validate_json(json.dumps(rest)))
     except ValidationError as error:
-        raise ValueError(problem_in(name, error)) from error
-
-
-def problem_in(name: str, error: ValidationError) -> str:
-    """The first thing that is wrong, and where."""
-    first = error.errors()[0]
-    where = ".".join([name, *(str(part) for part in first["loc"])])
-    message = first["msg"].removeprefix("Value error, ")
-    if first["type"] == "value_error":
-        return f"{where}: {message}"
-    return f"{where}: {message[0].lower()}{message[1:]}; found {short(first['input'])}"
-
-
-def short(value: Any) -> str:
-    """A value in a message, not too long."""
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+        raise ValueError(problem_of(error, name=name)) from error
 
 
 def _plain(value: Any) -> Any:

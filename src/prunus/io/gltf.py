@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import struct
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -23,14 +24,16 @@ KINDS = {"f": (5126, "VEC3"), "u": (5125, "SCALAR")}
 """Component type and type of glTF, of points and of indices."""
 
 
-def write_gltf(path: str | Path, skeleton: Skeleton) -> None:
+def write_gltf(
+    path: str | Path, skeleton: Skeleton, named: Mapping[int, str] | None = None
+) -> None:
     """Write .glb (binary) or .gltf (text, the buffer in it), by the ending.
 
     The tree stands upright in a viewer: the root node turns the frame of the file to that of glTF,
-    Y up, and holds the place of the base in double precision.
+    Y up, and holds the place of the base in double precision. `named`: see `tubes`.
     """
     path = Path(path)
-    found = tubes(skeleton)
+    found = tubes(skeleton, named)
     arrays = [array for tube in found for array in _arrays(tube, skeleton.xyz[0])]
     buffer = b"".join(array.tobytes() for array in arrays)
     document = _document(found, arrays, _standing(skeleton))

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from prunus.errors import PrunusError
-from prunus.io.safely import read_bytes
+from prunus.reading import json_of, read_bytes, text_of
 
 Line = dict[str, Any]
 
@@ -54,10 +54,8 @@ def _cut_torn(content: bytes) -> int:
 
 
 def _object(line: bytes, path: Path, number: int) -> Line:
-    try:
-        held = json.loads(line)
-    except (ValueError, RecursionError) as error:
-        raise PrunusError(f"{path}: line {number}: not JSON ({error})") from error
+    where = f"{path}: line {number}"
+    held = json_of(text_of(line, where), where)
     if not isinstance(held, dict):
-        raise PrunusError(f"{path}: line {number}: {type(held).__name__}; expected an object")
+        raise PrunusError(f"{where}: {type(held).__name__}; expected an object")
     return held

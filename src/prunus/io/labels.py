@@ -10,14 +10,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from prunus.errors import PrunusError
 from prunus.io.jsonl import append_line, read_lines_of
 from prunus.io.skeletons import InputRecord, Point
 from prunus.io.units import Unit
+from prunus.reading import record_of
 
 Category = Literal["trunk", "support", "leader", "side_branch", "other"]
 CATEGORIES: tuple[Category, ...] = ("trunk", "support", "leader", "side_branch", "other")
@@ -104,10 +105,11 @@ def read_labels(path: str | Path) -> Labels:
     lines = read_lines_of(path)
     if not lines:
         raise PrunusError(f"{path}: no whole line in it; expected the labels of candidate edges")
-    head = _checked(LabelHead, lines[0][1], path, 1)
+    head = record_of(LabelHead, lines[0][1], f"{path}: line 1")
     last: dict[tuple[int, int], EdgeLabel] = {}
     for number, line in lines[1:]:
-        label = _checked(EdgeLabel, {k: v for k, v in line.items() if k != "at"}, path, number)
+        told = {name: value for name, value in line.items() if name != "at"}
+        label = record_of(EdgeLabel, told, f"{path}: line {number}")
         last.pop(label.edge, None)
         if label.valid is not None:
             last[label.edge] = label
@@ -124,24 +126,12 @@ def labels_in(folder: Path) -> list[Path]:
     return [path for path in found if b"\n" in path.read_bytes()]
 
 
-Model = TypeVar("Model", bound=BaseModel)
-
-
-def _checked(model: type[Model], line: dict[str, Any], path: Path, number: int) -> Model:
-    try:
-        return model.model_validate(line)
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"]) or "the label"
-        raise PrunusError(f"{path}: line {number}: {where}: {first['msg']}") from error
-
-
 def _check_same(path: Path, head: LabelHead) -> None:
     """Raise where a file that is there holds the labels of another graph; a torn head is none."""
     lines = read_lines_of(path)
     if not lines:
         return
-    there = _checked(LabelHead, lines[0][1], path, 1)
+    there = record_of(LabelHead, lines[0][1], f"{path}: line 1")
     differing = [name for name, value in head.graph.items() if there.graph[name] != value]
     if differing:
         raise PrunusError(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from prunus.io.names import names_of
 from prunus.measure.branches import branches
-from prunus.measure.names import branch_names
 from prunus.model import Floats, Ints, Label, Skeleton
 
 SIDES = 12
@@ -31,15 +32,15 @@ class Tube:
     faces: Ints
 
 
-def tubes(skeleton: Skeleton) -> list[Tube]:
+def tubes(skeleton: Skeleton, named: Mapping[int, str] | None = None) -> list[Tube]:
     """A tube for each branch that has a length, of a skeleton whose radii are all known.
 
-    A branch starts inside the wood that carries it, as thick as at its own first node. Branches are
-    numbered along X, as everywhere where X runs along the row.
+    A branch starts inside the wood that carries it, as thick as at its own first node. `named`: the
+    names of branches by the node after their first; others are numbered along X, as everywhere
+    where X runs along the row.
     """
-    found = branches(skeleton)
     made = []
-    for branch, name in zip(found, branch_names(skeleton, found), strict=True):
+    for branch, name in zip(branches(skeleton), names_of(skeleton, named or {}), strict=True):
         line, radius = skeleton.xyz[branch.rows], skeleton.radius[branch.rows]
         radius[0] = radius[1] if branch.rows[0] > 0 else radius[0]
         apart = np.linalg.norm(np.diff(line, axis=0), axis=1) > TINY

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
 
+from prunus.io.names import names_of
 from prunus.io.safely import write_bytes
 from prunus.measure.branches import Branch, branches, orders
 from prunus.model import Label, Skeleton
@@ -18,17 +19,22 @@ LETTERS = {Label.TRUNK: "T", Label.SUPPORT: "S", Label.LEADER: "L", Label.SIDE_B
 FEATURES = ("XX", "YY", "ZZ", "Radius", "Confidence")
 
 
-def write_mtg(path: str | Path, skeleton: Skeleton) -> None:
+def write_mtg(path: str | Path, skeleton: Skeleton, named: Mapping[int, str] | None = None) -> None:
     """Write the tree in FORM-A; what is unknown stays blank.
+
+    Branches have the numbers of their names (`named`: see `io.meshes.tubes`): L3 is leader 3.
 
     A column further right is what hangs on the node above it. A node lies where its edge ends; the
     base is the first node of the first branch.
     """
     found = branches(skeleton)
+    codes = map(_code, found, names_of(skeleton, named or {}))
+    starts = {int(branch.rows[1]): code for branch, code in zip(found, codes, strict=True)}
+    starts[0] = starts.pop(int(found[0].rows[1]))
     columns = int(orders(found, len(skeleton)).max()) + 2
     entities = [
         "\t" * column + code + "\t" * (columns - column) + values
-        for column, code, values in [(0, "/P1", ""), *_entities(skeleton, found)]
+        for column, code, values in [(0, "/P1", ""), *_entities(skeleton, starts)]
     ]
     head = "ENTITY-CODE" + "\t" * columns + "\t".join(FEATURES)
     write_bytes(Path(path), "\n".join([*_header(), head, *entities, ""]).encode())
@@ -51,22 +57,24 @@ def _header() -> list[str]:
     ]
 
 
-def _entities(skeleton: Skeleton, found: list[Branch]) -> Iterator[tuple[int, str, str]]:
+def _code(branch: Branch, name: str) -> str:
+    number = name.rpartition(" ")[2]
+    return LETTERS[branch.label] + (number if number.isdecimal() else "1")
+
+
+def _entities(skeleton: Skeleton, starts: dict[int, str]) -> Iterator[tuple[int, str, str]]:
     """Column, code and values of each branch and node; what hangs on a node follows it at once."""
-    starts = {int(branch.rows[1]): branch.label for branch in found[1:]} | {0: found[0].label}
     below = defaultdict[int, list[int]](list)
     for parent, child in reversed(skeleton.edges.tolist()):
         below[parent].append(child)
-    met: Counter[Label] = Counter()
     at = {-1: (-1, 0)}
     waiting = [0]
     while waiting:
         row = waiting.pop()
         column, number = at[int(skeleton.parent[row])]
         if row in starts:
-            label, column, number = starts[row], column + 1, 0
-            met[label] += 1
-            yield column, f"{'+' if row else '^/'}{LETTERS[label]}{met[label]}", ""
+            column, number = column + 1, 0
+            yield column, f"{'+' if row else '^/'}{starts[row]}", ""
         yield column, f"^{'<' if number else '/'}N{number + 1}", _values(skeleton, row)
         at[row] = column, number + 1
         waiting += sorted(below[row], key=starts.__contains__)

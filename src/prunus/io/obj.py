@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from prunus.io.export import COLOURS
@@ -10,8 +11,11 @@ from prunus.io.safely import write_bytes
 from prunus.model import Label, Skeleton
 
 
-def write_obj(path: str | Path, skeleton: Skeleton) -> None:
-    """Write the tubes, and beside them the materials with the colours of the labels (.mtl)."""
+def write_obj(path: str | Path, skeleton: Skeleton, named: Mapping[int, str] | None = None) -> None:
+    """Write the tubes, and beside them the materials with the colours of the labels (.mtl).
+
+    `named`: see `tubes`.
+    """
     path = Path(path)
     library = path.with_suffix(".mtl")
     lines = [
@@ -19,7 +23,7 @@ def write_obj(path: str | Path, skeleton: Skeleton) -> None:
         f"mtllib {library.name}",
     ]
     count = 1
-    for tube in tubes(skeleton):
+    for tube in tubes(skeleton, named):
         lines += [f"o {tube.name.replace(' ', '_')}", f"usemtl {tube.label.word}", "s 1"]
         lines += [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in tube.vertices.tolist()]
         lines += [f"f {a} {b} {c}" for a, b, c in (tube.faces + count).tolist()]

@@ -8,11 +8,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
 from prunus.errors import PrunusError
-from prunus.io.safely import read_marked, write_bytes
-from prunus.io.skeletons import InputRecord
+from prunus.io.safely import write_bytes
+from prunus.io.skeletons import InputRecord, SkeletonFile, sha256_of
+from prunus.model import Skeleton
+from prunus.reading import record_in
 
 Point = tuple[float, float, float]
 Positive = Annotated[float, Field(ge=0)]
@@ -88,6 +90,9 @@ class PlanFile(_Record):
     left: list[LeftRecord] = Field(description="why each rule did not ask for more")
     rules: dict[str, dict[str, Any]] = Field(description="as docs/cuts.md has them")
     skeleton: str | None = Field(None, description="the file that was planned on; null = a cloud")
+    skeleton_sha256: str | None = Field(
+        None, description="of the skeleton that was planned on: docs/files.md; null = not told"
+    )
     input: InputRecord | None = Field(None, description="the cloud; null = it was not there")
     notes: list[str] = Field([], description="how the input was read")
     version_of_prunus: str | None = None
@@ -100,10 +105,33 @@ def write_plan(path: str | Path, plan: PlanFile) -> None:
 
 def read_plan(path: str | Path) -> PlanFile:
     """The plan in a file; PrunusError naming file and field otherwise."""
-    path = Path(path)
-    try:
-        return PlanFile.model_validate_json(read_marked(path))
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"]) or "the file"
-        raise PrunusError(f"{path}: {where}: {first['msg']}") from error
+    return record_in(Path(path), PlanFile)
+
+
+def check_belongs(
+    plan: PlanFile, path: Path, skeleton: Skeleton, record: SkeletonFile | None, source: Path
+) -> list[str]:
+    """Raise where the plan in a file is not that of the skeleton, and its record, in `source`.
+
+    What is to be said where nobody can tell: plans did not always name their skeleton.
+    """
+    refined_from = None if record is None else record.refines
+    scan = None if record is None else record.input
+    if plan.skeleton_sha256 is None:
+        belongs = plan.input is None or scan is None or plan.input.sha256 == scan.sha256
+    else:
+        belongs = plan.skeleton_sha256 in (sha256_of(skeleton), refined_from)
+    if not belongs:
+        raise PrunusError(
+            f"{path}: is the plan of another skeleton, {made_on(plan)}; expected that of {source}"
+            f"{'' if scan is None else f' of {scan.file}'}: prunus cuts {source} makes it"
+        )
+    if plan.skeleton_sha256 is None:
+        return [f"{path} does not say of which skeleton it is; look whether it is of {source}"]
+    return []
+
+
+def made_on(plan: PlanFile) -> str:
+    """What a plan was made on, in words."""
+    scan = "" if plan.input is None else plan.input.file
+    return " of ".join(name for name in (plan.skeleton, scan) if name) or "of no name"

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from prunus.errors import PrunusError
 from prunus.io.clouds import read_cloud
 from prunus.io.images import read_colour, read_depth, read_mask
-from prunus.io.safely import read_marked
 from prunus.model import Camera, CloudView, DepthView, Floats, RigidMotion, RigView
+from prunus.reading import record_in
 
 Row = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 Positive = Annotated[FiniteFloat, Field(gt=0)]
@@ -65,22 +65,13 @@ def read_rig(folder: str | Path) -> list[RigView]:
         raise PrunusError(f"{folder}: not a folder; expected one with rig.json or *_cloud.ply")
     file = folder / "rig.json"
     if file.exists():
-        records = _records(file)
+        records = record_in(file, RigFile).views
         return [_view(record, file, f"views.{k}") for k, record in enumerate(records)]
     clouds = sorted(path for path in folder.glob("*_cloud.ply") if path.name[0] != ".")
     if not clouds:
         raise PrunusError(f"{folder}: holds neither rig.json nor *_cloud.ply; expected one of them")
     still = RigidMotion(np.eye(3), np.zeros(3))
     return [_cloud(path, still) for path in clouds]
-
-
-def _records(file: Path) -> list[ViewRecord]:
-    try:
-        return RigFile.model_validate_json(read_marked(file)).views
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"]) or "the file"
-        raise PrunusError(f"{file}: {where}: {first['msg']}") from error
 
 
 def _view(record: ViewRecord, file: Path, where: str) -> RigView:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -12,7 +13,7 @@ from prunus.errors import PrunusError
 from prunus.io.cylinders import Cylinders
 from prunus.io.export import COLOURS
 from prunus.io.safely import write_bytes
-from prunus.model import Floats, Label, Skeleton
+from prunus.model import Bools, Floats, Label, Skeleton
 from prunus.model.arrays import Bytes
 
 FRAME = "map"
@@ -24,26 +25,50 @@ TIME = 10**9
 TOPICS = {
     "/tree": "visualization_msgs/msg/MarkerArray",
     "/cuts": "geometry_msgs/msg/PoseArray",
+    "/cuts/review": "geometry_msgs/msg/PoseArray",
+    "/cuts/ids": "visualization_msgs/msg/MarkerArray",
     "/cloud": "sensor_msgs/msg/PointCloud2",
 }
+CYLINDER, TEXT = 3, 9
+"""Types of markers."""
+
+TEXT_HEIGHT_M = 0.02
+FREE, LOOKED_AT = (0, 158, 115), (213, 94, 0)
+"""Colours of the ids of cuts, which poses have no room for."""
+
+
+@dataclass(frozen=True, eq=False)
+class CutPoses:
+    """Cuts with their ids: places (C, 3), orientations (C, 4) as unit quaternions x y z w.
+
+    review (C,): a person looks first.
+    """
+
+    ids: list[str]
+    places: Floats
+    turns: Floats
+    review: Bools
 
 
 def write_mcap(
     path: str | Path,
     skeleton: Skeleton,
     cloud: tuple[Floats, Bytes | None] | None = None,
-    cuts: tuple[Floats, Floats] | None = None,
+    cuts: CutPoses | None = None,
 ) -> None:
     """Write a skeleton, whose radii are known, and what else there is, in one message each.
 
-    cloud: points (P, 3) and colours (P, 3) or None; cuts: places (C, 3) and orientations (C, 4),
-    unit quaternions x y z w. All in metres and in the frame of the input file.
+    cloud: points (P, 3) and colours (P, 3) or None. Cuts that a person looks at first are in a
+    topic of their own. All in metres and in the frame of the input file.
     """
     rosbag2, store = _rosbags(path)
     write = _Words(store)
     said = {"/tree": write.markers(skeleton)}
     if cuts is not None:
-        said["/cuts"] = write.poses(*cuts)
+        free = ~cuts.review
+        said["/cuts"] = write.poses(cuts.places[free], cuts.turns[free])
+        said["/cuts/review"] = write.poses(cuts.places[cuts.review], cuts.turns[cuts.review])
+        said["/cuts/ids"] = write.ids(cuts)
     if cloud is not None:
         said["/cloud"] = write.cloud(*cloud)
     with TemporaryDirectory() as folder:
@@ -84,31 +109,49 @@ class _Words:
         """A cylinder an edge, its namespace the label, its number the row of the skeleton."""
         made = Cylinders.of(skeleton)
         poses = self._poses((made.start + made.end) / 2, turned_from_z(made.axis))
-        colours = {
-            label: self.new("std_msgs/ColorRGBA", a=1.0,
-                            **{c: v / 255 for c, v in zip("rgb", COLOURS[label], strict=True)})
-            for label in Label
-        }  # fmt: skip
-        now = self.new("builtin_interfaces/Duration", sec=0, nanosec=0)
-        none = self.new(
-            "sensor_msgs/CompressedImage", header=self.header, format="",
-            data=np.zeros(0, np.uint8),
-        )  # fmt: skip
+        sizes = np.column_stack([2 * made.radius, 2 * made.radius, made.length]).tolist()
         markers = []
-        for row, pose in enumerate(poses, 1):
+        for row, (pose, size) in enumerate(zip(poses, sizes, strict=True), 1):
             label = Label(skeleton.label[row])
-            wide = 2 * float(made.radius[row - 1])
-            size = self.new("geometry_msgs/Vector3", x=wide, y=wide, z=float(made.length[row - 1]))
-            markers.append(self.new(
-                "visualization_msgs/Marker", header=self.header, ns=label.word, id=row, type=3,
-                action=0, pose=pose, scale=size, color=colours[label], lifetime=now,
-                frame_locked=False, points=[], colors=[], texture_resource="", texture=none,
-                uv_coordinates=[], text="", mesh_resource="",
-                mesh_file=self.new("visualization_msgs/MeshFile", filename="",
-                                   data=np.zeros(0, np.uint8)),
-                mesh_use_embedded_materials=False,
-            ))  # fmt: skip
+            markers.append(
+                self._marker(label.word, row, CYLINDER, pose, size, COLOURS[label], text="")
+            )
         return self.new("visualization_msgs/MarkerArray", markers=markers)
+
+    def ids(self, cuts: CutPoses) -> Any:
+        """The id of each cut as a text at its place.
+
+        The namespace is the topic that has its pose, the number the place of the pose in that.
+        """
+        count = {False: 0, True: 0}
+        markers = []
+        poses = self._poses(cuts.places, cuts.turns)
+        for text, pose, review in zip(cuts.ids, poses, cuts.review.tolist(), strict=True):
+            topic, colour = ("/cuts/review", LOOKED_AT) if review else ("/cuts", FREE)
+            size = [0.0, 0.0, TEXT_HEIGHT_M]
+            markers.append(self._marker(topic, count[review], TEXT, pose, size, colour, text=text))
+            count[review] += 1
+        return self.new("visualization_msgs/MarkerArray", markers=markers)
+
+    def _marker(
+        self, space: str, number: int, kind: int, pose: Any, size: list[float],
+        colour: tuple[int, int, int], text: str,
+    ) -> Any:  # fmt: skip
+        shares = dict(zip("rgb", (value / 255 for value in colour), strict=True))
+        none = np.zeros(0, np.uint8)
+        return self.new(
+            "visualization_msgs/Marker", header=self.header, ns=space, id=number, type=kind,
+            action=0, pose=pose, text=text, frame_locked=False,
+            scale=self.new("geometry_msgs/Vector3", **dict(zip("xyz", size, strict=True))),
+            color=self.new("std_msgs/ColorRGBA", a=1.0, **shares),
+            lifetime=self.new("builtin_interfaces/Duration", sec=0, nanosec=0),
+            points=[], colors=[], uv_coordinates=[], texture_resource="", mesh_resource="",
+            texture=self.new(
+                "sensor_msgs/CompressedImage", header=self.header, format="", data=none
+            ),
+            mesh_file=self.new("visualization_msgs/MeshFile", filename="", data=none),
+            mesh_use_embedded_materials=False,
+        )  # fmt: skip
 
     def poses(self, xyz: Floats, turns: Floats) -> Any:
         """A pose a cut."""

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from prunus.errors import PrunusError
+from prunus.reading import read_bytes as read_bytes
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 """What Excel and Notepad put before UTF-8."""
@@ -33,24 +34,6 @@ def parsing(named: object, kind: str) -> Iterator[None]:
     except BaseException as error:
         why = " ".join(str(error).split())[:200] or type(error).__name__
         raise PrunusError(f"{named}: not a readable {kind}: {why}") from error
-
-
-def read_bytes(path: Path) -> bytes:
-    """The whole file; PrunusError where it is missing, a folder, unreadable or empty."""
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
-    except MemoryError as error:
-        raise PrunusError(f"{path}: too large for the memory there is") from error
-    if not content:
-        raise PrunusError(f"{path}: the file is empty")
-    return content
-
-
-def read_marked(path: Path) -> bytes:
-    """The content of a text file in UTF-8 (see `read_bytes`), without a byte order mark."""
-    return read_bytes(path).removeprefix(BYTE_ORDER_MARK)
 
 
 def check_readable(path: Path) -> None:

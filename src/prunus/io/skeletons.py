@@ -5,69 +5,80 @@ Its JSON Schema is schemas/skeleton.json.
 
 from __future__ import annotations
 
+import hashlib
 import json
 from pathlib import Path
-from typing import Any, Literal, cast
+from typing import Annotated, Any, Literal, cast
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
 from prunus.errors import PrunusError
-from prunus.io.safely import read_marked, write_bytes
+from prunus.io.safely import write_bytes
 from prunus.model import Floats, Label, Skeleton
+from prunus.reading import in_words, record_in
 
 Word = Literal["trunk", "support", "leader", "side_branch"]
 Point = tuple[float, float, float]
+Share = Annotated[float, Field(ge=0, le=1)]
+Row = Annotated[int, Field(ge=0)]
+RowOrNone = Annotated[int, Field(ge=-1, le=2**53)]
 
 
-class InputRecord(BaseModel):
+class _Record(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class InputRecord(_Record):
     """The cloud that a skeleton came from."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     file: str
     sha256: str
     points: int
 
 
-class BranchTrust(BaseModel):
+class BranchName(_Record):
+    """A branch and how it is called."""
+
+    name: str = Field(
+        pattern=r"^[\w ]{1,80}$",
+        description="as in the report: leader 3 is the third from the left",
+    )
+    label: Word
+    nodes: list[Row] = Field(description="along it, from the node at which it leaves its parent")
+
+
+class BranchTrust(BranchName):
     """How likely a branch is right."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    name: str = Field(description="as in the report: leader 3 is the third from the left")
-    label: Word
-    nodes: list[int] = Field(description="along it, from the node at which it leaves its parent")
-    trust: float = Field(description="the probability that it is right")
+    trust: Share = Field(description="the probability that it is right")
 
 
-class TrustRecord(BaseModel):
+class TrustRecord(_Record):
     """How likely a skeleton is right: docs/trust.md."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    tree: float = Field(description="the share of its edges that likely need no correction")
-    edges: list[float | None] = Field(description="that the edge into a node needs none; by node")
+    tree: Share = Field(description="the share of its edges that likely need no correction")
+    edges: list[Share | None] = Field(description="that the edge into a node needs none; by node")
     branches: list[BranchTrust]
 
 
-class SkeletonFile(BaseModel):
+class SkeletonFile(_Record):
     """The contents of `skeleton.json`: one entry a node, whose edge is that from its parent."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", title="prunus skeleton")
+    model_config = ConfigDict(title="prunus skeleton")
 
     format: Literal["prunus-skeleton"] = "prunus-skeleton"
     version: Literal[1] = 1
     frame: Literal["file"] = Field("file", description="nodes are in the frame of the input file")
     unit: Literal["m"] = "m"
     nodes: list[Point] = Field(min_length=1, description="x, y, z; the base first")
-    parent: list[int] = Field(description="an earlier node; -1 for the base")
+    parent: list[RowOrNone] = Field(description="an earlier node; -1 for the base")
     label: list[Word] = Field(description="of the edge from the parent; the base repeats the first")
-    confidence: list[float | None] = Field(
+    confidence: list[Share | None] = Field(
         description="of the edge: that wood joins its ends; null = unknown"
     )
-    radius: list[float | None] = Field(description="null = unknown")
-    superpoint: list[int] = Field(description="index of the superpoint; -1 = none")
+    radius: list[Annotated[float, Field(ge=0)] | None] = Field(description="null = unknown")
+    superpoint: list[RowOrNone] = Field(description="index of the superpoint; -1 = none")
     score: float | None = Field(
         None, description="under params.search.score: learned, or SkelScore"
     )
@@ -75,10 +86,22 @@ class SkeletonFile(BaseModel):
     review: list[str] | None = Field(
         None, description="why a person should look before a machine acts; empty: no need"
     )
+    branches: list[BranchName] | None = Field(
+        None, description="their names, where others than a count along X"
+    )
+    refines: str | None = Field(
+        None, description="sha256 of the skeleton that was refined to this one: docs/files.md"
+    )
     input: InputRecord | None = None
     params: dict[str, Any] | None = None
     seed: int | None = None
     version_of_prunus: str | None = None
+
+    @property
+    def named(self) -> dict[int, str]:
+        """The names that the file gives to branches, each by the node after its first."""
+        told = self.branches or (self.trust.branches if self.trust else [])
+        return {branch.nodes[1]: branch.name for branch in told if len(branch.nodes) > 1}
 
 
 EVIDENCE = {name for name, field in SkeletonFile.model_fields.items() if field.default is None}
@@ -86,16 +109,20 @@ EVIDENCE = {name for name, field in SkeletonFile.model_fields.items() if field.d
 
 
 def write_skeleton(path: str | Path, skeleton: Skeleton, **evidence: Any) -> None:
-    """Write `skeleton.json`; `evidence`: see `EVIDENCE`."""
-    record = SkeletonFile(
-        nodes=skeleton.xyz.tolist(),
-        parent=skeleton.parent.tolist(),
-        label=[cast(Word, Label(label).word) for label in skeleton.label],
-        confidence=_nullable(skeleton.confidence),
-        radius=_nullable(skeleton.radius),
-        superpoint=skeleton.superpoint.tolist(),
-        **evidence,
-    )
+    """Write `skeleton.json`; `evidence`: see `EVIDENCE`.
+
+    PrunusError where it cannot be written, or a confidence or radius is none.
+    """
+    with in_words(path, SkeletonFile):
+        record = SkeletonFile(
+            nodes=skeleton.xyz.tolist(),
+            parent=skeleton.parent.tolist(),
+            label=[cast(Word, Label(label).word) for label in skeleton.label],
+            confidence=_nullable(skeleton.confidence),
+            radius=_nullable(skeleton.radius),
+            superpoint=skeleton.superpoint.tolist(),
+            **evidence,
+        )
     rows = record.model_dump()
     lines = [f"  {json.dumps(key)}: {_compact(value)}" for key, value in rows.items()]
     write_bytes(Path(path), ("{\n" + ",\n".join(lines) + "\n}\n").encode())
@@ -104,20 +131,8 @@ def write_skeleton(path: str | Path, skeleton: Skeleton, **evidence: Any) -> Non
 def read_record(path: str | Path) -> tuple[Skeleton, SkeletonFile]:
     """The skeleton, and all that its file says; PrunusError naming file and field otherwise."""
     path = Path(path)
-    try:
-        record = SkeletonFile.model_validate_json(read_marked(path))
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"]) or "the file"
-        raise PrunusError(f"{path}: {where}: {first['msg']}") from error
-    columns = ("parent", "label", "confidence", "radius", "superpoint")
-    for name in columns:
-        found = len(getattr(record, name))
-        if found != len(record.nodes):
-            raise PrunusError(
-                f"{path}: {name}: {found} entries; expected one for each of the "
-                f"{len(record.nodes)} nodes"
-            )
+    record = record_in(path, SkeletonFile)
+    _check_lengths(record, path)
     try:
         skeleton = Skeleton.build(
             record.nodes,
@@ -132,9 +147,40 @@ def read_record(path: str | Path) -> tuple[Skeleton, SkeletonFile]:
     return skeleton, record
 
 
+def _check_lengths(record: SkeletonFile, path: Path) -> None:
+    """Raise where a column does not have an entry a node, or a branch a node that is none."""
+    count = len(record.nodes)
+    columns = ("parent", "label", "confidence", "radius", "superpoint")
+    entries = {name: len(getattr(record, name)) for name in columns}
+    if record.trust is not None:
+        entries["trust.edges"] = len(record.trust.edges)
+    for name, found in entries.items():
+        if found != count:
+            raise PrunusError(
+                f"{path}: {name}: {found} entries; expected one for each of the {count} nodes"
+            )
+    for branch in [*(record.branches or []), *(record.trust.branches if record.trust else [])]:
+        if any(row >= count for row in branch.nodes):
+            raise PrunusError(
+                f"{path}: {branch.name}: node {max(branch.nodes)}; expected 0 to {count - 1}"
+            )
+
+
+def sha256_of(skeleton: Skeleton) -> str:
+    """The sha256 of places, parents and labels, the same in whatever file a skeleton is kept."""
+    whole = hashlib.sha256()
+    for column, kind in (
+        (skeleton.xyz + 0.0, "<f8"),  # no -0.0
+        (skeleton.parent, "<i8"),
+        (skeleton.label, "i1"),
+    ):
+        whole.update(np.ascontiguousarray(column, kind).tobytes())
+    return whole.hexdigest()
+
+
 def read_skeleton(path: str | Path) -> Skeleton:
     """The skeleton of a `skeleton.json`, or of an SWC file, by the ending."""
-    from prunus.io.export import read_swc
+    from prunus.io.swc import read_swc
 
     return read_swc(path) if Path(path).suffix.lower() == ".swc" else read_record(path)[0]
 

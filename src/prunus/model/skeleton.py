@@ -190,27 +190,28 @@ class Skeleton:
         return replace(self, xyz=motion.apply(self.xyz))
 
     def to_networkx(self) -> networkx.DiGraph[int]:
-        """A networkx DiGraph, parent -> child.
+        """A networkx DiGraph, parent -> child, which all writers of networkx take.
 
-        Nodes carry `x`, `y`, `z`, `radius` and `superpoint`; edges `label` (word), `confidence`,
-        `length`: words and numbers, which every writer of networkx takes.
+        Nodes carry `x`, `y`, `z`, `radius` and `superpoint`; edges `label` (word), `confidence` and
+        `length`. What is unknown has no entry: formats do not agree on how NaN is written.
         """
         import networkx as nx
 
         graph: Any = nx.DiGraph()
         for row in range(len(self)):
-            x, y, z = self.xyz[row].tolist()
-            graph.add_node(
-                row, x=x, y=y, z=z,
-                radius=float(self.radius[row]),
-                superpoint=int(self.superpoint[row]),
-            )  # fmt: skip
+            place = dict(zip("xyz", self.xyz[row].tolist(), strict=True))
+            radius = _if_known(radius=float(self.radius[row]))
+            graph.add_node(row, **place, **radius, superpoint=int(self.superpoint[row]))
         for row in range(1, len(self)):
             graph.add_edge(
                 int(self.parent[row]),
                 row,
                 label=Label(self.label[row]).word,
-                confidence=float(self.confidence[row]),
+                **_if_known(confidence=float(self.confidence[row])),
                 length=float(self.lengths[row]),
             )
         return graph
+
+
+def _if_known(**values: float) -> dict[str, float]:
+    return {name: value for name, value in values.items() if not np.isnan(value)}

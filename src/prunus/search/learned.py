@@ -15,7 +15,6 @@ All labels are sought at once, side branches among them.
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -35,6 +34,7 @@ from prunus.model import (
     Skeleton,
 )  # fmt: skip
 from prunus.params import Parameters
+from prunus.reading import read_toml
 from prunus.search.directed import Directed
 from prunus.search.eligible import grammar_table
 from prunus.search.refine import refine
@@ -74,14 +74,12 @@ class LearnedScore:
     @classmethod
     def from_toml(cls, path: Path) -> LearnedScore:
         """The score in a file; PrunusError naming it where it is none."""
+        held = read_toml(path)
         try:
-            held = tomllib.loads(path.read_text(encoding="utf-8"))
             edge = [[float(held["edge"][label.word][term]) for term in TERMS] for label in Label]
             turn = [[float(x) for x in held["turn"][a.word][b.word]] for a, b in CHANGES]
             return cls(np.array(edge), np.array(turn).reshape(len(CHANGES), len(TURNS) + 1))
-        except OSError as error:
-            raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
-        except (tomllib.TOMLDecodeError, KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError) as error:
             raise PrunusError(f"{path}: not a learned score ({error})") from error
 
     def to_toml(self) -> str:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
 from functools import cache
 from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict
+
+from prunus.reading import read_toml
 
 Range = tuple[float, float]
 """A number is drawn evenly between the two."""
@@ -135,4 +136,4 @@ class Habits(Group):
 def ufo_habits() -> Habits:
     """The habits that the package ships."""
     path = Path(__file__).with_name("habits.toml")
-    return Habits.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
+    return Habits.model_validate(read_toml(path))

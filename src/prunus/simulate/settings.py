@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import tomllib
 from functools import cache
 from pathlib import Path
 from typing import Literal
 
+from prunus.reading import read_toml
 from prunus.simulate.habits import Group, Range
 
 Setting = Literal["field", "clean"]
@@ -87,4 +87,4 @@ class ScanSettings(Group):
 def scan_settings(name: Setting = "field") -> ScanSettings:
     """The settings of that name."""
     path = Path(__file__).with_name("scan.toml")
-    return ScanSettings.model_validate(tomllib.loads(path.read_text(encoding="utf-8"))[name])
+    return ScanSettings.model_validate(read_toml(path)[name])

@@ -11,7 +11,8 @@ from prunus.corrections import State, Work
 from prunus.corrections.draft import pair_of
 from prunus.cutting import plan_file
 from prunus.errors import PrunusError
-from prunus.io.plans import PlanFile, read_plan
+from prunus.io.plans import PlanFile, made_on, read_plan, write_plan
+from prunus.io.skeletons import sha256_of
 from prunus.measure import branches
 from prunus.measure.cuts import Plan, plan_cuts
 from prunus.measure.refine import refined
@@ -66,9 +67,29 @@ def _nodes(tree: Skeleton, names: list[str]) -> dict[str, int]:
 
 def file_of(plan: Plan, work: Work) -> PlanFile:
     """The plan of the work as it stands, as `plan.json` has it."""
-    name = "corrected.json" if work.position else "skeleton.json"
-    scan = work.scan
-    return plan_file(plan, scan.cloud.to_input, skeleton=name, input=scan.record, notes=scan.notes)
+    state, scan = work.state, work.scan
+    tree = state.result.skeleton
+    if work.position:
+        tree = state.draft.skeleton().moved(state.scan.to_input)
+    return plan_file(
+        plan,
+        scan.cloud.to_input,
+        skeleton="corrected.json" if work.position else "skeleton.json",
+        skeleton_sha256=sha256_of(tree),
+        input=scan.record,
+        notes=scan.notes,
+    )
+
+
+def save(path: Path, file: PlanFile) -> None:
+    """Write a plan; PrunusError where that of another scan would be lost, or it cannot be done."""
+    try:
+        other = _of_another_scan(read_plan(path), file) if path.exists() else ""
+    except PrunusError:  # no plan, so nothing is lost
+        other = ""
+    if other:
+        raise PrunusError(f"{path}: {other}; move it away to save this one")
+    write_plan(path, file)
 
 
 def told_of_file(path: Path, file: PlanFile) -> str:
@@ -76,7 +97,17 @@ def told_of_file(path: Path, file: PlanFile) -> str:
     if not path.exists():
         return "not saved"
     try:
-        same = read_plan(path) == file
+        there = read_plan(path)
     except PrunusError as error:
         return f"cannot be read: {error}"
-    return f"saved in {path.name}" if same else f"{path.name} is of the tree as it was before"
+    if there == file:
+        return f"saved in {path.name}"
+    other = _of_another_scan(there, file) or "is of the tree as it was before"
+    return f"{path.name} {other}"
+
+
+def _of_another_scan(there: PlanFile, file: PlanFile) -> str:
+    """Of what other scan a plan is, in words; nothing where it is of the same."""
+    if there.input is None or file.input is None or there.input.sha256 == file.input.sha256:
+        return ""
+    return f"is the plan of another tree, {made_on(there)}; this is {made_on(file)}"

@@ -9,11 +9,10 @@ from prunus.corrections import Act, Settings, State, Work, branch_names, status_
 from prunus.errors import PrunusError
 from prunus.evaluate.edits import Edits, edits
 from prunus.intake import Scan
-from prunus.io.plans import write_plan
 from prunus.measure.cuts import Plan
 from prunus.model import PointCloud, Skeleton
 from prunus.studio.picture import Picture
-from prunus.studio.planned import PLAN, file_of, told_of_file
+from prunus.studio.planned import PLAN, file_of, save, told_of_file
 from prunus.studio.shelf import Item
 
 Told = Callable[[], None]
@@ -87,7 +86,7 @@ class Tree:
         """Write the plan of the work as it stands; PrunusError where the tree is read-only."""
         with self.lock:
             work = self.own()
-            write_plan(work.folder / PLAN, file_of(plan, work))
+            save(work.folder / PLAN, file_of(plan, work))
 
     def told_of_plan(self, plan: Plan) -> str:
         """Whether a plan of the work as it stands was saved, in words."""

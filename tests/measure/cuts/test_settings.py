@@ -24,8 +24,11 @@ def test_a_file_names_only_what_differs(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("[side_branches]\nlonger = 1\n", "side_branches.longer: unknown; expected one of apply"),
-        ("[thinning]\nclosest = 1\n", "thinning: unknown; expected one of height, review"),
+        (
+            "[side_branches]\nlonger = 1\n",
+            "side_branches.longer: unknown key; expected one of apply",
+        ),
+        ("[thinning]\nclosest = 1\n", "thinning: unknown key; expected one of height, review"),
         ("[spacing]\nclosest = -1\n", "spacing.closest: input should be greater than 0; found -1"),
         ("[side_branches]\nstub = 0.2\n", "stub 0.2 is not under longer_than 0.15"),
         ("[height]\nto = 3\n", "height: to 3.0 is above over 2.4"),

@@ -8,13 +8,13 @@ known of it; for a leader, of which there are few to learn from, over its least 
 from __future__ import annotations
 
 import math
-import tomllib
 from functools import cache
 from pathlib import Path
 
 from prunus.measure.cuts.evidence import Evidence
 from prunus.measure.odds import Odds
 from prunus.model import Label
+from prunus.reading import read_toml
 
 SHIPPED = Path(__file__).parents[2] / "weights" / "cuts.toml"
 """The models that the package ships."""
@@ -40,7 +40,7 @@ def features(evidence: Evidence) -> dict[str, float]:
 @cache
 def shipped_odds(part: str = "side_branches") -> Odds:
     """The model that the package ships for cuts of `side_branches`, or through `leaders`."""
-    return Odds.of(tomllib.loads(SHIPPED.read_text(encoding="utf-8"))[part])
+    return Odds.of(read_toml(SHIPPED)[part])
 
 
 def confidence_of(label: Label, evidence: Evidence) -> float:

@@ -70,17 +70,19 @@ def plan_cuts(
     tree: Refined | Skeleton,
     scan: Floats | None = None,
     rules: CutRules | None = None,
+    names: list[str] | None = None,
 ) -> Plan:
     """The pruning plan of a tree in the house frame.
 
     scan: all points (P, 3) around the tree, house frame, its own among them; without them no way
     to a cut is known, and every cut is reviewed. A plain skeleton has the radii it holds, and its
-    lengths are taken as told.
+    lengths are taken as told. names: of the branches, as `measure.branches` has them, where they
+    are others than the tree's own.
     """
     rules = rules or shipped_rules()
     measured = isinstance(tree, Refined)
     tree = tree if isinstance(tree, Refined) else as_it_is(tree)
-    limbs = Limbs.of(tree.skeleton, tree.names, measured=measured)
+    limbs = Limbs.of(tree.skeleton, names or tree.names, measured=measured)
     said = verdicts(limbs, rules)
     demands = [one for one in said if isinstance(one, Demand)]
     places = np.array([one.limb.at(one.along) for one in demands]).reshape(-1, 3)

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import tomllib
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from prunus.errors import PrunusError
+from prunus.reading import in_words, read_toml
 
 SHIPPED = Path(__file__).with_name("cuts.toml")
 """The rules that the package ships."""
 
 
 class _Group(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
 
 class SideBranches(_Group):
@@ -90,16 +89,14 @@ class CutRules(_Group):
         for name, group in values.items():
             whole = isinstance(group, dict) and isinstance(merged.get(name), dict)
             merged[name] = {**merged[name], **group} if whole else group
-        try:
+        with in_words(source, cls, noun="key"):
             return cls.model_validate(merged)
-        except ValidationError as error:
-            raise PrunusError(f"{source}: {_problem(error)}") from error
 
     @classmethod
     def from_toml(cls, path: str | Path) -> CutRules:
         """Rules from a TOML file; PrunusError where it is none, or holds what no rule knows."""
         path = Path(path)
-        return cls.parse(_read(path), str(path))
+        return cls.parse(read_toml(path), str(path))
 
 
 @cache
@@ -110,30 +107,4 @@ def shipped_rules() -> CutRules:
 
 @cache
 def _shipped_values() -> dict[str, Any]:
-    return _read(SHIPPED)
-
-
-def _read(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise PrunusError(f"{path}: not a TOML file: {error}") from error
-
-
-def _problem(error: ValidationError) -> str:
-    first = error.errors()[0]
-    where = [str(part) for part in first["loc"]]
-    name = ".".join(where)
-    if first["type"] == "extra_forbidden":
-        return f"{name}: unknown; expected one of {', '.join(_known(where[:-1]))}"
-    message = first["msg"].removeprefix("Value error, ")
-    return f"{name}: {message[0].lower()}{message[1:]}; found {first['input']!r}"
-
-
-def _known(groups: list[str]) -> list[str]:
-    known: Any = CutRules
-    for group in groups:
-        known = known.model_fields[group].annotation
-    return sorted(known.model_fields)
+    return read_toml(SHIPPED)

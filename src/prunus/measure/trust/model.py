@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from prunus.measure.odds import Odds
 from prunus.model import Label
+from prunus.reading import read_toml
 
 SHIPPED = Path(__file__).parents[2] / "weights" / "trust.toml"
 """The models that the package ships."""
@@ -24,7 +24,7 @@ class Model:
     @classmethod
     def from_toml(cls, path: Path) -> Model:
         """The model in a file."""
-        held = tomllib.loads(path.read_text(encoding="utf-8"))
+        held = read_toml(path)
         return cls({label: Odds.of(held[label.word]) for label in Label}, Odds.of(held["edge"]))
 
     def to_toml(self) -> str:

@@ -1,0 +1,26 @@
+"""The names of branches in files: refining moves branches, and a count anew would swap some."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import cast
+
+from prunus.io.skeletons import BranchName, Word
+from prunus.measure.branches import branches
+from prunus.measure.names import branch_names
+from prunus.model import Skeleton
+
+
+def names_of(skeleton: Skeleton, named: Mapping[int, str]) -> list[str]:
+    """The name of each branch: as told of the node after its first, else by a count along X."""
+    found = branches(skeleton)
+    counted = zip(found, branch_names(skeleton, found), strict=True)
+    return [named.get(int(branch.rows[1]), name) for branch, name in counted]
+
+
+def named_branches(skeleton: Skeleton, names: Iterable[str]) -> list[BranchName]:
+    """The names of all branches of a skeleton, as `refined.json` has them."""
+    return [
+        BranchName(name=name, label=cast(Word, branch.label.word), nodes=branch.rows.tolist())
+        for name, branch in zip(names, branches(skeleton), strict=True)
+    ]
