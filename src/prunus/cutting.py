@@ -21,6 +21,7 @@ from prunus.measure.cuts.plan import as_it_is
 from prunus.measure.cuts.reach import samples
 from prunus.measure.refine import Refined, refined
 from prunus.model import FRAMES, Floats, Label, PointCloud, RigidMotion, Skeleton
+from prunus.names import as_text
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.result import REFINED_WITH
@@ -99,12 +100,14 @@ def _on_skeleton(source: Source, rules: CutRules) -> PlanFile:
     if scan is None:
         to_file = RigidMotion(_upright(skeleton, source.frame), np.zeros(3)).inverse()
         plan = plan_cuts(skeleton.moved(to_file.inverse()), None, rules)
-        return plan_file(plan, to_file, skeleton=path.name, notes=notes)
+        return plan_file(plan, to_file, skeleton=as_text(path.name), notes=notes)
     cloud = scan.cloud
     in_house = skeleton.moved(cloud.to_input.inverse())
     plan = plan_cuts(_refined(in_house, cloud), cloud.xyz, rules)
     notes += scan.notes
-    return plan_file(plan, cloud.to_input, skeleton=path.name, input=scan.record, notes=notes)
+    return plan_file(
+        plan, cloud.to_input, skeleton=as_text(path.name), input=scan.record, notes=notes
+    )
 
 
 def _scan_of(source: Source, record: InputRecord | None) -> Scan:

@@ -16,6 +16,7 @@ from prunus.io.clouds import read_cloud
 from prunus.io.images import read_colour, read_depth, read_mask
 from prunus.io.safely import read_marked
 from prunus.model import Camera, CloudView, DepthView, Floats, RigidMotion, RigView
+from prunus.names import as_text
 
 Row = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 Positive = Annotated[FiniteFloat, Field(gt=0)]
@@ -95,7 +96,7 @@ def _view(record: ViewRecord, file: Path, where: str) -> RigView:
 
 def _cloud(path: Path, pose: RigidMotion) -> CloudView:
     held = read_cloud(path)
-    return CloudView(path.name, held.xyz, pose, held.rgb)
+    return CloudView(as_text(path.name), held.xyz, pose, held.rgb)
 
 
 def _depth(record: ViewRecord, file: Path, where: str, pose: RigidMotion) -> DepthView:
@@ -109,7 +110,7 @@ def _depth(record: ViewRecord, file: Path, where: str, pose: RigidMotion) -> Dep
         colour = read_colour(file.parent / record.colour, expected)
     if record.mask is not None:
         mask = read_mask(file.parent / record.mask, expected)
-    return DepthView(path.name, depth, _camera(record, file, where), pose, colour, mask)
+    return DepthView(as_text(path.name), depth, _camera(record, file, where), pose, colour, mask)
 
 
 def _camera(record: ViewRecord, file: Path, where: str) -> Camera:
