@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from prunus.errors import PrunusError, told
+from prunus.errors import PrunusError, describe
 from prunus.names import LONGEST_BYTES, as_text, folder_name, in_line
 
 posix = pytest.mark.skipif(os.name != "posix", reason="names are bytes on POSIX alone")
@@ -56,5 +56,5 @@ def test_long_names_that_differ_only_at_the_end_give_two_folders() -> None:
         (OSError(5, "two\nlines"), "internal error, please report it: OSError: [Errno 5] two%0Al"),
     ],
 )
-def test_every_exception_is_told_in_one_line(error: Exception, text: str) -> None:
-    assert told(error).startswith(text)
+def test_every_exception_is_described_in_one_line(error: Exception, text: str) -> None:
+    assert describe(error).startswith(text)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -13,8 +14,8 @@ import pytest
 
 from prunus.errors import PrunusError
 from prunus.workers import WorkerError, in_order, side_by_side
+from tests.children import child, session, until
 from tests.deeds import deed, sit_deaf, wait_for_ever
-from tests.processes import group, started, until
 
 needs_proc = pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks into /proc")
 
@@ -98,20 +99,21 @@ def test_no_worker_outlives_its_parent(
 ) -> None:
     (tmp_path / "parent.py").write_text(PARENT)
     marks = [tmp_path / "one", tmp_path / "two"]
-    words = [sys.executable, tmp_path / "parent.py", work.__name__, *marks]
+    words = [tmp_path / "parent.py", work.__name__, *marks]
     env = os.environ | {"PYTHONPATH": os.pathsep.join([*sys.path, str(Path.cwd())])}
-    with started(*words, env=env) as parent:
+    with child(*words, env=env, stderr=subprocess.PIPE) as parent:
         until(lambda: all(mark.exists() for mark in marks), "two busy workers")
-        assert len(group(parent.pid)) >= 3
+        assert len(session(parent.pid)) >= 3
         parent.send_signal(number)
         status = parent.wait(60)
         assert status == (-number if number == signal.SIGKILL else 128 + number)
-        until(lambda: not group(parent.pid), "the end of all processes")
+        until(lambda: not session(parent.pid), "the end of all processes")
         assert parent.stderr.read() == ""
     if work is wait_for_ever:
         assert not any(mark.exists() for mark in marks), "they cleared away before they ended"
 
 
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 def test_a_signal_that_was_ignored_stays_ignored_and_sigterm_still_ends() -> None:
     code = (
         "import signal, time\nfrom prunus.ending import end_on_signals\nend_on_signals()\n"
@@ -119,8 +121,28 @@ def test_a_signal_that_was_ignored_stays_ignored_and_sigterm_still_ends() -> Non
     )
     words = ["import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_IGN); "
              "os.execv(sys.executable, [sys.executable, '-c', sys.argv[1]])", code]  # fmt: skip
-    with started(sys.executable, "-c", *words) as process:
+    with child("-c", *words) as process:
         assert process.stdout.readline() == "True\n"
         process.send_signal(signal.SIGINT)
         process.terminate()
         assert process.wait(60) == 128 + signal.SIGTERM
+
+
+LOST = {
+    "in a callback from C": "ctypes.CFUNCTYPE(None)(hit)()",
+    "in a finalizer": "type('Thing', (), {'__del__': lambda self: hit()})()",
+}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("where", LOST)
+def test_a_signal_ends_the_program_wherever_it_strikes(where: str) -> None:
+    code = (
+        "import ctypes, os, signal, time\nfrom prunus.ending import end_on_signals\n"
+        "end_on_signals()\n"
+        "def hit():\n    os.kill(os.getpid(), signal.SIGTERM)\n    time.sleep(1)\n"
+        f"{LOST[where]}\ntime.sleep(60)"
+    )
+    with child("-c", code, stderr=subprocess.PIPE) as process:
+        assert process.communicate(timeout=30) == ("", "")
+        assert process.returncode == 128 + signal.SIGTERM

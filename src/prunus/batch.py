@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from prunus import __version__
-from prunus.errors import PrunusError, told
+from prunus.errors import PrunusError, describe
 from prunus.intake import Scan, open_scan
 from prunus.io.export import write_ply, write_swc
 from prunus.io.inputs import clouds_in, is_one, names_of
@@ -124,7 +124,7 @@ def attempt(task: Task, options: Options) -> Record:
 
 def _gave(task: Task, error: Exception | None) -> Record:
     """The record of a task of which an exception came."""
-    text = told(error or PrunusError("nothing came of it"))
+    text = describe(error or PrunusError("nothing came of it"))
     return failure(task.path, text if in_line(task.path) in text else f"{task.path}: {text}")
 
 

@@ -14,7 +14,7 @@ from typer.core import TyperGroup
 
 from prunus import __version__
 from prunus.ending import end_on_signals
-from prunus.errors import OptionError, PrunusError, Status, blaming_the_command, told
+from prunus.errors import OptionError, PrunusError, Status, blaming_the_command, describe
 
 if TYPE_CHECKING:
     from prunus.params import Parameters
@@ -691,7 +691,7 @@ def main() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(Status.FAILED)
     except Exception as error:  # a fault of ours is said in one line, with how to see more of it
-        typer.echo(f"prunus: {told(error)}", err=True)
+        typer.echo(f"prunus: {describe(error)}", err=True)
         sys.exit(Status.FAILED)
 
 

@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import sys
+import threading
 from types import FrameType
-from typing import NoReturn
+from typing import Any, NoReturn
+
+AGAIN_S = 0.05
+"""So soon a signal comes again that came where nothing can be ended."""
+
+
+class EndedBySignal(SystemExit):
+    """Unwinds the program; its code is the exit status."""
 
 
 def end_on_signals() -> None:
@@ -17,7 +27,22 @@ def end_on_signals() -> None:
         usual = (signal.SIG_DFL, signal.default_int_handler)
         if number is not None and signal.getsignal(number) in usual:
             signal.signal(number, _end)
+    sys.unraisablehook = _come_again
 
 
 def _end(number: int, frame: FrameType | None) -> NoReturn:
-    raise SystemExit(128 + number)
+    raise EndedBySignal(128 + number)
+
+
+def _come_again(lost: Any) -> None:
+    """Python drops what is raised in a callback from C, as from the compiler, and in a finalizer.
+
+    Were it our signal, nothing would ever end.
+    """
+    if not isinstance(lost.exc_value, EndedBySignal):
+        sys.__unraisablehook__(lost)
+        return
+    number = int(lost.exc_value.code or 0) - 128
+    again = threading.Timer(AGAIN_S, os.kill, (os.getpid(), number))
+    again.daemon = True
+    again.start()

@@ -62,7 +62,7 @@ class Status(IntEnum):
         return cls.WRONG_COMMAND if isinstance(error, OptionError) else cls.FAILED
 
 
-def told(error: BaseException) -> str:
+def describe(error: BaseException) -> str:
     """An exception in one line. One that we did not foresee is a fault of ours, and said to be one.
 
     With PRUNUS_DEBUG in the environment its traceback goes to standard error.
