@@ -53,7 +53,10 @@ def test_long_names_that_differ_only_at_the_end_give_two_folders() -> None:
         (PrunusError("a.ply: bad\nand worse"), "a.ply: bad%0Aand worse"),
         (MemoryError(), "not enough memory"),
         (KeyError("x"), "internal error, please report it: KeyError: 'x' (PRUNUS_DEBUG=1 shows"),
-        (OSError(5, "two\nlines"), "internal error, please report it: OSError: [Errno 5] two%0Al"),
+        (RuntimeError("two\nlines"), "internal error, please report it: RuntimeError: two%0Alines"),
+        (OSError("mine"), "internal error, please report it: OSError: mine"),
+        (OSError(28, "No space left on device"), "No space left on device"),
+        (OSError(5, "Input/output error", "a\nb.ply"), "a%0Ab.ply: Input/output error"),
     ],
 )
 def test_every_exception_is_described_in_one_line(error: Exception, text: str) -> None:

@@ -69,10 +69,12 @@ def describe(error: BaseException) -> str:
     """
     if isinstance(error, PrunusError):
         return str(error)
-    if isinstance(error, MemoryError):
-        return "not enough memory"
     if os.environ.get("PRUNUS_DEBUG"):
         traceback.print_exception(error)
+    if isinstance(error, MemoryError):
+        return "not enough memory"
+    if isinstance(error, OSError) and error.strerror:
+        return in_line(f"{error.filename}: {error.strerror}" if error.filename else error.strerror)
     return in_line(
         f"internal error, please report it: {type(error).__name__}: {error} "
         "(PRUNUS_DEBUG=1 shows where)"
