@@ -10,8 +10,6 @@ from __future__ import annotations
 import argparse
 import math
 import time
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 
 import numpy as np
 
@@ -26,6 +24,7 @@ from prunus.sensing.isolate import isolate, look_at
 from prunus.sensing.level import find_turn
 from prunus.sensing.orient import local_wood
 from prunus.simulate.scan import simulate_scan
+from prunus.workers import in_order
 
 THINGS = (Kind.POST, Kind.WIRE)
 Record = dict[str, float]
@@ -78,8 +77,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=950_000)
     chosen = parser.parse_args()
     seeds = range(chosen.seed, chosen.seed + chosen.rows)
-    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
-        records = list(pool.map(measured, seeds))
+    records = list(in_order(measured, seeds, 2))
     for name in dict.fromkeys(name for record in records for name in record):
         values = np.array([record[name] for record in records if name in record])
         low, middle, high = np.nanquantile(values, [0.1, 0.5, 0.9])

@@ -28,7 +28,9 @@ FLOORS = [
     {"sensing", "search", "stages", "measure", "io"},
     {"rules", "grammar", "params", "kernels"},
     {"model", "reading"},
+    {"workers"},
     {"errors"},
+    {"ending", "names"},
 ]
 """From the roof down. A room may use rooms on lower floors, and those named in SAME_FLOOR."""
 

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing
 from dataclasses import dataclass, field
-from multiprocessing import get_context
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from prunus import __version__
-from prunus.errors import PrunusError
+from prunus.errors import PrunusError, describe
 from prunus.intake import Scan, open_scan
 from prunus.io.export import write_ply
 from prunus.io.inputs import clouds_in, is_one, names_of
 from prunus.io.names import named_branches
 from prunus.io.records import EdgesByLabel, TreeRecord
-from prunus.io.safely import write_bytes
+from prunus.io.safely import write_bytes, written_together
 from prunus.io.skeletons import sha256_of, write_skeleton
 from prunus.io.swc import write_swc
 from prunus.io.tables import csv_bytes, parquet_bytes, without_nan
@@ -28,12 +27,14 @@ from prunus.measure.cuts import plan_cuts
 from prunus.measure.defined import BRANCH_TRAITS, TREE_TRAITS
 from prunus.measure.traits import branch_traits, tree_traits
 from prunus.model import Label
+from prunus.names import as_text, folder_name, in_line
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.report import report_page
 from prunus.result import Result, Seconds, timed
 from prunus.stages.confidence import EdgeScorer, HandmadeScorer
 from prunus.stages.networks import NetworkScorer
+from prunus.workers import side_by_side
 
 Record = dict[str, Any]
 """What `--json` prints of one tree: a `TreeRecord`."""
@@ -80,11 +81,11 @@ def plan(inputs: list[Path], output: Path | None) -> tuple[list[Task], list[Reco
             failed.append(failure(path, f"{path}: no point cloud in this folder"))
         files += inside
     root = output or Path("prunus-out")
-    if len(files) == 1 and output is not None and is_one(inputs[0]):
+    if output is not None and len(files) == len(inputs) == 1 and is_one(inputs[0]):
         return [Task(files[0], output)], failed
     tasks: dict[Path, Task] = {}
     for path, name in zip(files, names_of(files), strict=True):
-        folder = root / name
+        folder = root / folder_name(name)
         if folder in tasks:
             other = tasks[folder].path
             text = f"{path}: has the same name as {other}; both would be written to {folder}"
@@ -95,14 +96,19 @@ def plan(inputs: list[Path], output: Path | None) -> tuple[list[Task], list[Reco
 
 
 def run(tasks: list[Task], options: Options, jobs: int) -> Iterator[Record]:
-    """The records of the tasks as they are done; a bad file gives a record that says why.
+    """A record of each task as it is done; a bad file gives a record that says why.
 
-    The first run of all works on one tree alone, so that the kernels are compiled only once.
+    One tree alone is done in this process, several in others, so that one of them may crash. The
+    first run of all works on one tree first, so that the kernels are compiled only once.
     """
-    alone = len(tasks) if jobs == 1 else 0 if is_compiled(_mode(options.params)) else 1
-    yield from (attempt(task, options) for task in tasks[:alone])
-    if tasks[alone:]:
-        yield from _side_by_side(tasks[alone:], options, jobs)
+    if len(tasks) == 1:
+        yield attempt(tasks[0], options)
+        return
+    alone = 0 if is_compiled(_mode(options.params)) else 1
+    for some, at_once in ((tasks[:alone], 1), (tasks[alone:], jobs)):
+        with closing(side_by_side(partial(attempt, options=options), some, at_once)) as all_done:
+            for done in all_done:
+                yield done.made or _gave(some[done.number], done.error)
 
 
 def _mode(params: Parameters) -> str:
@@ -110,25 +116,18 @@ def _mode(params: Parameters) -> str:
     return f"{params.superpoints.place} {params.confidence.edge_net} {params.search.score}"
 
 
-def _side_by_side(tasks: list[Task], options: Options, jobs: int) -> Iterator[Record]:
-    with ProcessPoolExecutor(min(jobs, len(tasks)), mp_context=get_context("spawn")) as pool:
-        waiting = {pool.submit(attempt, task, options): task for task in tasks}
-        for done in as_completed(waiting):
-            try:
-                yield done.result()
-            except BrokenProcessPool:
-                path = waiting[done].path
-                yield failure(path, f"{path}: its worker was killed, perhaps for want of memory")
-
-
 def attempt(task: Task, options: Options) -> Record:
-    """Do one task; a PrunusError becomes a record of failure."""
+    """Do one task; what goes wrong with it, foreseen or not, becomes a record of failure."""
     try:
         return do(task, options)
-    except PrunusError as error:
-        text = str(error)
-        named = text if str(task.path) in text else f"{task.path}: {text}"
-        return failure(task.path, named)
+    except Exception as error:  # a fault of ours costs one tree, and not the batch
+        return _gave(task, error)
+
+
+def _gave(task: Task, error: Exception | None) -> Record:
+    """The record of a task of which an exception came."""
+    text = describe(error or PrunusError("nothing came of it"))
+    return failure(task.path, text if in_line(task.path) in text else f"{task.path}: {text}")
 
 
 def do(task: Task, options: Options) -> Record:
@@ -145,8 +144,7 @@ def do(task: Task, options: Options) -> Record:
         _ = result.review
     mark_compiled(_mode(options.params))
     with timed(seconds, "write"):
-        write_outputs(task.folder, result, scan, options.report)
-        notes = write_traits(task.folder, result, scan.file.name) if options.traits else []
+        notes = write_all(task.folder, result, scan, options)
     return _record(task, result, scan, seconds, notes)
 
 
@@ -159,14 +157,21 @@ def scorer_of(options: Options) -> EdgeScorer:
     return NetworkScorer.shipped(options.params.confidence.edge_net)
 
 
-def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> None:
-    """skeleton.json, .swc and .ply, refined.json, params.toml and, where wanted, report.html."""
+def write_all(folder: Path, result: Result, scan: Scan, options: Options) -> list[str]:
+    """The folder of a tree, skeleton.json last: where it is, all is. Notes on what is missing."""
     if folder.exists() and not folder.is_dir():
         raise PrunusError(f"{folder}: is a file; expected a folder to write to")
+    with written_together(folder, "skeleton.json") as together:
+        write_outputs(together, result, scan, options.report)
+        return write_traits(together, result, scan.file.name) if options.traits else []
+
+
+def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> None:
+    """skeleton.json, .swc and .ply, refined.json, params.toml and, where wanted, report.html."""
     if report:
         plan = plan_cuts(result.refined, result.scan.xyz)
         page = report_page(result, scan.file.name, [*scan.notes, *result.notes], plan)
-        write_bytes(folder / "report.html", page.encode())
+        write_bytes(folder / "report.html", as_text(page).encode())
     write_swc(folder / "skeleton.swc", result.skeleton)
     write_ply(folder / "skeleton.ply", result.skeleton)
     write_bytes(folder / "params.toml", result.params.to_toml().encode())
@@ -228,10 +233,10 @@ def _record(
         spent = {stage: round(both[kind], 4) for stage, both in seconds.items()}
         columns.append({**spent, "total": round(sum(both[kind] for both in seconds.values()), 4)})
     return TreeRecord(
-        file=str(task.path),
+        file=as_text(task.path),
         ok=True,
         error=None,
-        skeleton=str(task.folder / "skeleton.json"),
+        skeleton=as_text(task.folder / "skeleton.json"),
         score=result.score,
         points=len(scan.cloud),
         superpoints=len(graph.xyz),
@@ -245,10 +250,10 @@ def _record(
         wall_s=columns[1],
         trust=None if result.trust is None else round(result.trust.tree, 4),
         review=result.review,
-        warnings=[*scan.notes, *result.notes, *result.warnings, *notes],
+        warnings=[*map(as_text, [*scan.notes, *result.notes, *result.warnings, *notes])],
     ).model_dump()
 
 
 def failure(path: Path, text: str) -> Record:
     """The record of a file that could not be done."""
-    return TreeRecord(file=str(path), ok=False, error=text).model_dump()
+    return TreeRecord(file=as_text(path), ok=False, error=in_line(text)).model_dump()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from enum import StrEnum
+from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +13,8 @@ import typer
 from typer.core import TyperGroup
 
 from prunus import __version__
-from prunus.errors import OptionError, PrunusError, Status, blaming_the_command
+from prunus.ending import end_on_signals
+from prunus.errors import OptionError, PrunusError, Status, blaming_the_command, describe
 
 if TYPE_CHECKING:
     from prunus.params import Parameters
@@ -679,11 +681,17 @@ def _report(
 
 
 def main() -> None:
-    """Run the command line; a closed pipe and Ctrl-C end it quietly."""
+    """Run the command line; a closed pipe and signals end it quietly, any other fault in words."""
+    end_on_signals()
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         app()
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(Status.FAILED)
+    except Exception as error:  # a fault of ours is said in one line, with how to see more of it
+        typer.echo(f"prunus: {describe(error)}", err=True)
         sys.exit(Status.FAILED)
 
 

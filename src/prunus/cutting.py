@@ -22,6 +22,7 @@ from prunus.measure.cuts.plan import as_it_is
 from prunus.measure.cuts.reach import samples
 from prunus.measure.refine import Refined, refined
 from prunus.model import FRAMES, Floats, Label, PointCloud, RigidMotion, Skeleton
+from prunus.names import as_text
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.result import REFINED_WITH
@@ -92,7 +93,11 @@ def _on_skeleton(source: Source, rules: CutRules) -> PlanFile:
         skeleton = read_skeleton(path)
     notes = [] if record is None else list(record.review or ())
     sha256 = (record and record.refines) or sha256_of(skeleton)
-    told: dict[str, Any] = {"skeleton": path.name, "skeleton_sha256": sha256, "notes": notes}
+    told: dict[str, Any] = {
+        "skeleton": as_text(path.name),
+        "skeleton_sha256": sha256,
+        "notes": notes,
+    }
     named = None if record is None else record.named
     scan = None
     try:

@@ -1,14 +1,24 @@
-"""The exceptions that the library raises on purpose, and the exit statuses of the command line."""
+"""The exceptions raised on purpose, what is said of all others, and the exit statuses."""
 
 from __future__ import annotations
 
+import os
+import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import IntEnum
 
+from prunus.names import in_line
+
 
 class PrunusError(ValueError):
-    """Bad input: the message names the file or field, what was found and what was expected."""
+    """Bad input: the message names the file or field, what was found and what was expected.
+
+    The message is one line of valid UTF-8, whatever names are in it.
+    """
+
+    def __init__(self, text: object = "") -> None:
+        super().__init__(in_line(text))
 
 
 class NoTreeError(PrunusError):
@@ -50,3 +60,22 @@ class Status(IntEnum):
     def of(cls, error: PrunusError) -> Status:
         """The status with which an error ends a command."""
         return cls.WRONG_COMMAND if isinstance(error, OptionError) else cls.FAILED
+
+
+def describe(error: BaseException) -> str:
+    """An exception in one line. One that we did not foresee is a fault of ours, and said to be one.
+
+    With PRUNUS_DEBUG in the environment its traceback goes to standard error.
+    """
+    if isinstance(error, PrunusError):
+        return str(error)
+    if os.environ.get("PRUNUS_DEBUG"):
+        traceback.print_exception(error)
+    if isinstance(error, MemoryError):
+        return "not enough memory"
+    if isinstance(error, OSError) and error.strerror:
+        return in_line(f"{error.filename}: {error.strerror}" if error.filename else error.strerror)
+    return in_line(
+        f"internal error, please report it: {type(error).__name__}: {error} "
+        "(PRUNUS_DEBUG=1 shows where)"
+    )

@@ -16,6 +16,7 @@ from prunus.io.records import PairRecord
 from prunus.io.skeletons import read_skeleton
 from prunus.io.tables import without_nan
 from prunus.model import Label, Lines, Skeleton
+from prunus.names import as_text
 
 Record = dict[str, Any]
 
@@ -28,7 +29,7 @@ def pairs_in(skeletons: Path, gold: Path) -> list[tuple[str, Path, Path]]:
     Raises PrunusError where a gold standard has no skeleton, or there is none.
     """
     if not skeletons.is_dir() and not gold.is_dir():
-        return [(str(skeletons), skeletons, gold)]
+        return [(as_text(skeletons), skeletons, gold)]
     if skeletons.is_dir() != gold.is_dir():
         raise PrunusError(f"{skeletons} and {gold}: expected two files or two folders")
     ours, theirs = _named(skeletons, "skeleton"), _gold_in(gold)
@@ -40,7 +41,7 @@ def pairs_in(skeletons: Path, gold: Path) -> list[tuple[str, Path, Path]]:
     missing = sorted(set(theirs) - set(ours))
     if missing:
         raise PrunusError(f"{skeletons}: no skeleton {missing[0]!r}, which {gold} has")
-    return [(name, ours[name], theirs[name]) for name in sorted(theirs)]
+    return [(as_text(name), ours[name], theirs[name]) for name in sorted(theirs)]
 
 
 def _gold_in(folder: Path) -> dict[str, Path]:

@@ -9,6 +9,7 @@ import codecs
 import json
 import re
 import reprlib
+import stat
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -26,8 +27,9 @@ UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 def read_bytes(path: Path, *, empty: bool = False) -> bytes:
-    """The whole file; PrunusError where it is missing, a folder, unreadable or (if not) empty."""
+    """The whole file; PrunusError where it is missing, no file, unreadable or (if not) empty."""
     try:
+        check_kind(path)
         content = path.read_bytes()
     except OSError as error:
         raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
@@ -36,6 +38,13 @@ def read_bytes(path: Path, *, empty: bool = False) -> bytes:
     if not content and not empty:
         raise PrunusError(f"{path}: the file is empty")
     return content
+
+
+def check_kind(path: Path) -> None:
+    """Raise PrunusError on a pipe or a device, which may never end, or never begin."""
+    mode = path.stat().st_mode
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        raise PrunusError(f"{path}: a pipe or a device; expected a file")
 
 
 def text_of(content: bytes, source: Path | str, *, lenient: bool = False) -> str:

@@ -88,3 +88,14 @@ def test_of_many_at_once_one_gets_it(tmp_path: Path) -> None:
             came = list(pool.map(lambda _: acquire(tmp_path), range(16)))
         assert sum(holder is None for holder in came) == 1
     assert {path.name for path in tmp_path.iterdir()} == {NAME, GUARD}
+
+
+def test_a_lock_is_given_back_when_the_process_ends_however_far_it_was(tmp_path: Path) -> None:
+    code = (
+        "import sys\nfrom pathlib import Path\nfrom prunus.corrections.lock import acquire, NAME\n"
+        "assert acquire(Path(sys.argv[1])) is None and (Path(sys.argv[1]) / NAME).exists()\n"
+        "sys.exit(143)"
+    )
+    with child("-c", code, tmp_path) as process:
+        assert process.wait(60) == 143
+    assert not (tmp_path / NAME).exists()

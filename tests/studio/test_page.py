@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -21,7 +22,7 @@ from prunus.studio.modes.mode import put
 from prunus.studio.planned import planned
 from prunus.studio.shelf import Item
 from prunus.studio.tree import Tree
-from tests.children import child
+from tests.children import prunus
 from tests.studio.conftest import Remote, Visit, new_page, soon, until
 
 Opened = Callable[..., Visit]
@@ -355,8 +356,12 @@ def test_a_killed_server_loses_nothing_that_was_shown(
         visit.press("undo")
         server.kill()
         server.wait()
-    with running(scan, work) as (_, url), a_page(browser) as page:
+    with running(scan, work) as (server, url), a_page(browser) as page:
         Remote(page, picture).come(url)
+        assert (work / "oak" / "lock.json").exists()
+        server.terminate()
+        assert server.wait(60) == 128 + signal.SIGTERM
+    assert not (work / "oak" / "lock.json").exists()
     acts = (work / "oak" / "journal.jsonl").read_text().splitlines()[1:]
     assert len(acts) in (2, 3)
     again = (work / "oak" / "corrected.json").read_bytes()
@@ -366,9 +371,7 @@ def test_a_killed_server_loses_nothing_that_was_shown(
 @contextmanager
 def running(scan: Path, work: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """The command as a person runs it, and where it says the page is."""
-    words = ["studio", str(scan), "-o", str(work), "--port", "0", "--no-open"]
-    with child("-m", "prunus.cli", *words) as server:
-        assert server.stdout is not None
+    with prunus("studio", scan, "-o", work, "--port", 0, "--no-open") as server:
         yield server, server.stdout.readline().split()[-1]
 
 

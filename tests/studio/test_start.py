@@ -1,3 +1,6 @@
+import os
+import signal
+import sys
 from importlib import util
 from pathlib import Path
 
@@ -7,6 +10,7 @@ from prunus.corrections import Settings
 from prunus.errors import PrunusError
 from prunus.studio import start
 from prunus.studio.start import has_display, open_studio
+from tests.children import child, prunus
 
 
 def test_without_viser_the_command_says_what_to_install(
@@ -31,3 +35,31 @@ def test_no_browser_is_opened_over_ssh(monkeypatch: pytest.MonkeyPatch) -> None:
     assert has_display()
     monkeypatch.setenv("SSH_CONNECTION", "10.0.0.1 22 10.0.0.2 22")
     assert not has_display()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_ends_the_studio(number: signal.Signals, tmp_path: Path) -> None:
+    pytest.importorskip("viser", reason="viser is not installed")
+    (tmp_path / "a.ply").write_text("x")
+    words = ["studio", tmp_path, "-o", tmp_path / "work", "--port", 0, "--no-open"]
+    with prunus(*words) as server:
+        assert "the studio is at http://127.0.0.1" in server.stdout.readline()
+        server.send_signal(number)
+        assert server.wait(60) == 128 + number
+        assert server.stderr.read() == ""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_the_studio_of_a_script_in_the_background_ends_on_sigterm(tmp_path: Path) -> None:
+    pytest.importorskip("viser", reason="viser is not installed")
+    (tmp_path / "a.ply").write_text("x")
+    words = 'studio "$1" -o "$1/work" --port 0 --no-open'
+    line = f'"$0" -m prunus.cli {words} & echo $!; wait $!; echo $?'
+    shell = "import os, sys; os.execvp('sh', ['sh', '-c', *sys.argv[1:]])"
+    with child("-c", shell, line, sys.executable, tmp_path) as process:
+        number, *told = (process.stdout.readline() for _ in range(3))
+        assert "the studio is at" in told[0]
+        os.kill(int(number), signal.SIGINT)
+        os.kill(int(number), signal.SIGTERM)
+        assert int(process.communicate(timeout=60)[0]) == 128 + signal.SIGTERM

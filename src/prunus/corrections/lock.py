@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import getpass
 import json
@@ -23,6 +24,8 @@ GUARD = ".lock.guard"
 """Stays in the folder: whoever removes it would part those who wait for it."""
 PATIENCE = 5.0
 """Nobody keeps the guard so long, seconds."""
+MINE: set[Path] = set()
+"""The folders whose locks this process has."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,7 @@ def acquire(folder: Path) -> Holder | None:
         if holder is not None and not holder.is_gone:
             return holder
         write_bytes(path, (json.dumps(asdict(Holder.me())) + "\n").encode())
+        MINE.add(folder)
     return None
 
 
@@ -83,6 +87,14 @@ def release(folder: Path) -> None:
         holder = _holder(_read(path))
         if holder is not None and (holder.pid, holder.host) == (os.getpid(), socket.gethostname()):
             remove(path)
+        MINE.discard(folder)
+
+
+@atexit.register
+def _release_all() -> None:
+    """A signal may end the process while a tree is being opened in another thread."""
+    for folder in [folder for folder in MINE if (folder / NAME).exists()]:
+        release(folder)
 
 
 @contextlib.contextmanager

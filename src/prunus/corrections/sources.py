@@ -13,6 +13,7 @@ from prunus.corrections.journal import Head
 from prunus.errors import PrunusError
 from prunus.intake import Scan, open_scan
 from prunus.io.inputs import source_of
+from prunus.io.original import called
 from prunus.io.safely import digest_of
 from prunus.io.skeletons import InputRecord, read_record
 from prunus.model import Skeleton
@@ -82,7 +83,8 @@ def _cloud_of(path: Path, wanted: InputRecord) -> Path:
     if name in ("", ".", "..") or "\\" in name or "/" in name.partition("#")[0]:
         raise PrunusError(f"{path}: input.file: found {name!r}; expected the name of a file")
     folders = list(dict.fromkeys([path.parent, path.parent.parent, Path()]))
-    found = [source_of(folder / name) for folder in folders]
+    paths = [path for one in folders for path in dict.fromkeys([one / name, *called(name, one)])]
+    found = [source_of(path) for path in paths]
     there = [source for source in found if source.path.exists()]
     for source in there:
         if digest_of(source.path) == wanted.sha256:

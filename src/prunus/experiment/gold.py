@@ -29,6 +29,7 @@ from prunus.io.original import original_of
 from prunus.io.skeletons import Point, read_record
 from prunus.learn.labelled import labelled_graphs
 from prunus.model import PointCloud, Skeleton
+from prunus.names import as_text
 from prunus.params import Parameters
 from prunus.pipeline import follow
 
@@ -47,7 +48,7 @@ class Corrected:
     @property
     def name(self) -> str:
         """The folder's name."""
-        return self.folder.name
+        return as_text(self.folder.name)
 
     @property
     def made_of(self) -> str:

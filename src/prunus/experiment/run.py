@@ -5,9 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
-from multiprocessing import get_context
 from pathlib import Path
 
 from prunus import __version__
@@ -15,6 +13,7 @@ from prunus.errors import PrunusError
 from prunus.experiment.orchard import Subject, Tree
 from prunus.experiment.trial import Record, Way, trial, ways
 from prunus.io.safely import read_bytes, write_bytes
+from prunus.workers import in_order
 
 FIRST_SEED = 900_000
 """The trees of the experiment: nothing was ever trained or tuned on seeds from here on."""
@@ -29,11 +28,7 @@ def run_trees(
     the same parameters and the same version.
     """
     make = partial(run_tree, folder, draws=draws, ablation=ablation)
-    if jobs == 1:
-        yield from map(make, subjects)
-        return
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        yield from pool.map(make, subjects)
+    yield from in_order(make, subjects, jobs)
 
 
 def run_tree(folder: Path, subject: Subject, draws: int, ablation: bool = False) -> Record:

@@ -22,6 +22,7 @@ from prunus.io.safely import digest_of, parsing, read_bytes, write_bytes
 from prunus.io.units import UNITS, metres_in, unit_of
 from prunus.model import Floats
 from prunus.model.arrays import Bytes
+from prunus.names import as_text
 
 PLAUSIBLE_M = 50.0
 """A scan wider than so many metres is not in metres, unless `unit` says so."""
@@ -49,7 +50,7 @@ class FileCloud:
     @property
     def name(self) -> str:
         """What the file is called where it is shown and written down."""
-        return source_of(self.path).name
+        return as_text(source_of(self.path).name)
 
 
 def read_cloud(path: str | Path, unit: str | None = None) -> FileCloud:

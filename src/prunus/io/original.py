@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from glob import escape
 from pathlib import Path
@@ -10,6 +11,7 @@ from prunus.errors import PrunusError
 from prunus.io.inputs import source_of
 from prunus.io.safely import digest_of
 from prunus.io.skeletons import InputRecord
+from prunus.names import as_text
 
 
 def original_of(record: InputRecord, folder: Path, scans: Path | None = None) -> Path:
@@ -45,5 +47,20 @@ def _places(name: str, folder: Path, scans: Path | None) -> Iterator[Path]:
     roots = [scans] if scans else [own, *list(own.parents)[:2], Path.cwd()]
     for root in roots:
         for pattern in ("", "*/", f"{escape(own.name)}/", f"*/{escape(own.name)}/"):
-            for path in sorted(root.glob(pattern + escape(file))):
+            for path in called(file, root, pattern):
                 yield Path(f"{path}#{topic}") if topic else path
+
+
+def called(name: str, folder: Path, below: str = "") -> list[Path]:
+    """The files whose name is written down so, in a folder or in those of a pattern below it.
+
+    A name that is no UTF-8 is written down with `%C4` for each such byte, see `names.as_text`.
+    """
+    exact = sorted(folder.glob(below + escape(name)))
+    if exact or not _WRITTEN_BYTE.search(name):
+        return exact
+    like = folder.glob(below + _WRITTEN_BYTE.sub("?", escape(name)))
+    return sorted(path for path in like if as_text(path.name) == name)
+
+
+_WRITTEN_BYTE = re.compile("%[0-9A-F]{2}")

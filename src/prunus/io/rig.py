@@ -15,6 +15,7 @@ from prunus.errors import PrunusError
 from prunus.io.clouds import read_cloud
 from prunus.io.images import read_colour, read_depth, read_mask
 from prunus.model import Camera, CloudView, DepthView, Floats, RigidMotion, RigView
+from prunus.names import as_text
 from prunus.reading import record_in
 
 Row = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
@@ -86,7 +87,7 @@ def _view(record: ViewRecord, file: Path, where: str) -> RigView:
 
 def _cloud(path: Path, pose: RigidMotion) -> CloudView:
     held = read_cloud(path)
-    return CloudView(path.name, held.xyz, pose, held.rgb)
+    return CloudView(as_text(path.name), held.xyz, pose, held.rgb)
 
 
 def _depth(record: ViewRecord, file: Path, where: str, pose: RigidMotion) -> DepthView:
@@ -100,7 +101,7 @@ def _depth(record: ViewRecord, file: Path, where: str, pose: RigidMotion) -> Dep
         colour = read_colour(file.parent / record.colour, expected)
     if record.mask is not None:
         mask = read_mask(file.parent / record.mask, expected)
-    return DepthView(path.name, depth, _camera(record, file, where), pose, colour, mask)
+    return DepthView(as_text(path.name), depth, _camera(record, file, where), pose, colour, mask)
 
 
 def _camera(record: ViewRecord, file: Path, where: str) -> Camera:

@@ -5,12 +5,18 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 from prunus.errors import PrunusError
+from prunus.names import in_line
+from prunus.reading import check_kind
 from prunus.reading import read_bytes as read_bytes
+
+TEMPORARY = ".prunus-"
+"""How the names of unfinished files begin; they are short, so that any name of a file will do."""
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 """What Excel and Notepad put before UTF-8."""
@@ -41,6 +47,7 @@ def check_readable(path: Path) -> None:
     if path.is_dir():
         return
     try:
+        check_kind(path)
         with path.open("rb") as file:
             first = file.read(1)
     except OSError as error:
@@ -66,22 +73,51 @@ def digest_of(path: Path) -> str:
 def write_bytes(path: Path, content: bytes) -> None:
     """Write to a temporary name beside the file, then rename: never half a file.
 
-    Raises PrunusError on a folder that cannot be made or written, and on a full disk; an older
-    file of that name then stays as it was.
+    Raises PrunusError on a folder that cannot be made or written, on a full disk, and where there
+    is a pipe or a device; an older file of that name then stays as it was. A link stays a link.
     """
     temporary = None
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        target = Path(os.path.realpath(path))
+        if path.exists():
+            check_kind(path)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=TEMPORARY)
         with os.fdopen(handle, "wb") as file:
             file.write(content)
         Path(temporary).chmod(0o666 & ~_umask())
-        Path(temporary).replace(path)
+        Path(temporary).replace(target)
     except OSError as error:
+        raise PrunusError(f"{path}: cannot be written ({error.strerror})") from error
+    finally:
         if temporary is not None:
             with contextlib.suppress(OSError):
                 Path(temporary).unlink()
-        raise PrunusError(f"{path}: cannot be written ({error.strerror})") from error
+
+
+@contextlib.contextmanager
+def written_together(folder: Path, last: str) -> Iterator[Path]:
+    """A folder to write to, whose files then come into `folder` together, `last` after the others.
+
+    So a file called `last` says that all beside it is whole and of one run, even where a run was
+    killed: an older one goes before the first new file comes. Nothing comes of a run that fails.
+    Raises PrunusError where the folder cannot be made or written.
+    """
+    temporary = None
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        temporary = Path(tempfile.mkdtemp(dir=folder, prefix=TEMPORARY))
+        yield temporary
+        (folder / last).unlink(missing_ok=True)
+        for path in sorted(temporary.iterdir(), key=lambda path: path.name == last):
+            path.replace(folder / path.name)
+    except OSError as error:
+        raise PrunusError(f"{folder}: cannot be written ({error.strerror})") from error
+    except PrunusError as error:
+        raise PrunusError(str(error).replace(in_line(temporary), in_line(folder))) from error
+    finally:
+        if temporary is not None:
+            shutil.rmtree(temporary, ignore_errors=True)
 
 
 def remove(path: Path) -> None:

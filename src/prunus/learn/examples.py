@@ -8,13 +8,11 @@ it; the edges of each graph are seen again in another draw of the cloud, 20 000 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
+import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from multiprocessing import get_context
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,8 +28,7 @@ from prunus.stages.candidates import find_candidates
 from prunus.stages.context import Context, Inputs, context_of, description
 from prunus.stages.images import edge_images
 from prunus.stages.superpoints import find_superpoints
-
-Made = TypeVar("Made")
+from prunus.workers import in_order
 
 POINTS = (20_000, 100_000)
 """Clouds hold between so many points."""
@@ -84,22 +81,13 @@ def split_by_tree(folders: list[Path], rng: np.random.Generator) -> list[list[Pa
 
 def examples_of(folders: list[Path], seed: int, jobs: int, cover: Cover) -> Iterator[list[Example]]:
     """The examples of each scan, in order; superpoints as the network will meet them."""
-    yield from by_scan(partial(examples_in, seed=seed, cover=cover), folders, jobs)
-
-
-def by_scan(make: Callable[[Path], Made], folders: list[Path], jobs: int) -> Iterator[Made]:
-    """What is made of each scan, in order, several at a time."""
-    if jobs == 1:
-        yield from map(make, folders)
-        return
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        yield from pool.map(make, folders)
+    yield from in_order(partial(examples_in, seed=seed, cover=cover), folders, jobs)
 
 
 def examples_in(folder: Path, seed: int, cover: Cover) -> list[Example]:
     """The examples of one scan: a function of the scan, the seed and how superpoints are chosen."""
     scan = read_scan(folder)
-    rng = np.random.default_rng([seed, *folder.name.encode()])
+    rng = np.random.default_rng([seed, *os.fsencode(folder.name)])
     wood = true_wood(scan)
     return [one for _ in range(GRAPHS) for one in _examples(scan, wood, rng, cover)]
 

@@ -8,6 +8,7 @@ trunk the scan holds is asked for in turn, and its neighbours are what they are 
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -19,7 +20,7 @@ from torch import Tensor, nn
 
 from prunus.io.scans import ScannedTree, read_scan
 from prunus.kernels.neighbours import nearest, within
-from prunus.learn.examples import VIEWS, by_scan, drawn
+from prunus.learn.examples import VIEWS, drawn
 from prunus.learn.start import go_on_from
 from prunus.learn.train import exported
 from prunus.measure import branches
@@ -27,6 +28,7 @@ from prunus.model import Floats, Ints, Kind, Label, PointCloud, Skeleton
 from prunus.params import Parameters
 from prunus.sensing.isolate import NODE_REACH, judged_graph
 from prunus.sensing.surroundings import LINK_FEATURES, NODE_FEATURES, Pieces, Surroundings
+from prunus.workers import in_order
 
 GRAPHS = 2
 """Draws of points from each scan."""
@@ -78,13 +80,13 @@ class RowExample:
 
 def row_examples(folders: list[Path], seed: int, jobs: int) -> Iterator[list[RowExample]]:
     """The examples of each scan, in order."""
-    yield from by_scan(partial(row_examples_in, seed=seed), folders, jobs)
+    yield from in_order(partial(row_examples_in, seed=seed), folders, jobs)
 
 
 def row_examples_in(folder: Path, seed: int) -> list[RowExample]:
     """The examples of one scan: a function of the scan and the seed."""
     scan = read_scan(folder)
-    rng = np.random.default_rng([seed, *folder.name.encode()])
+    rng = np.random.default_rng([seed, *os.fsencode(folder.name)])
     kinds = [VIEWS[k] for k in (0, *rng.choice(len(VIEWS), GRAPHS - 1, p=SHARES))]
     return [row_example(scan, seen, rng) for seen in kinds]
 

@@ -7,6 +7,7 @@ each graph is seen again in other draws of the cloud.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
@@ -19,12 +20,14 @@ from prunus.intake import open_scan
 from prunus.io.classes import target_of
 from prunus.io.labels import CATEGORIES, EdgeLabel, LabelHead, Labels, read_labels
 from prunus.io.original import original_of
-from prunus.learn.examples import Example, by_scan, drawn, example_of, seen_again
+from prunus.learn.examples import Example, drawn, example_of, seen_again
 from prunus.learn.labels import INVALID, SOME, UNTOLD
 from prunus.model import CandidateGraph, Ints, PointCloud
+from prunus.names import as_text
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.stages.candidates import find_candidates
+from prunus.workers import in_order
 
 VIEWS = 4
 """Each graph is seen in so many draws of its cloud, the first that of the studio."""
@@ -57,7 +60,7 @@ def labelled_trees(
     paths: list[Path], seed: int, jobs: int, scans: Path | None = None
 ) -> Iterator[LabelledTree]:
     """The labelled trees of some `labels.jsonl`, in order."""
-    yield from by_scan(partial(labelled_tree, seed=seed, scans=scans), paths, jobs)
+    yield from in_order(partial(labelled_tree, seed=seed, scans=scans), paths, jobs)
 
 
 def labelled_tree(path: Path, seed: int, scans: Path | None = None) -> LabelledTree:
@@ -67,10 +70,10 @@ def labelled_tree(path: Path, seed: int, scans: Path | None = None) -> LabelledT
     graph that the chain makes of it.
     """
     held = read_labels(path)
-    rng = np.random.default_rng([seed, *path.parent.name.encode()])
+    rng = np.random.default_rng([seed, *os.fsencode(path.parent.name)])
     found, over = labelled_graphs(held, scans)
     graphs = [list(_views(graph, category, rng)) for graph, category in found]
-    return LabelledTree(path.parent.name, graphs, len(held.labels), len(over))
+    return LabelledTree(as_text(path.parent.name), graphs, len(held.labels), len(over))
 
 
 def labelled_graphs(

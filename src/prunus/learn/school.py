@@ -15,6 +15,7 @@ from prunus.io.scans import scans_in
 from prunus.learn.examples import Example
 from prunus.learn.lessons import Sources, Watch, lessons_from
 from prunus.learn.tables import measures, table
+from prunus.names import as_text
 from prunus.params import Parameters
 from prunus.stages.networks import WEIGHTS, shipped_or_own
 
@@ -87,7 +88,7 @@ def _called(start: Path | None) -> str | None:
     """A network by its name, where it is one that ships."""
     if start is None:
         return None
-    return start.stem if start.parent == WEIGHTS else str(start)
+    return start.stem if start.parent == WEIGHTS else as_text(start)
 
 
 def lines_of(report: dict[str, Any]) -> list[str]:
@@ -135,7 +136,8 @@ def isolation_school(
         last = net
         losses.append(loss)
     report = {
-        "network": "isolation", "seed": seed, "epochs": epochs, "from": start and start.name,
+        "network": "isolation", "seed": seed, "epochs": epochs,
+        "from": start and as_text(start.name),
         "trees": [first_test, len(folders) - first_test], "losses": losses,
         "test": isolation.kept_and_removed(last, test),
     }  # fmt: skip

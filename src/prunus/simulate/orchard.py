@@ -9,21 +9,20 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from prunus.io.safely import write_bytes
+from prunus.io.safely import write_bytes, written_together
 from prunus.io.scans import write_scan
 from prunus.io.skeletons import write_skeleton
 from prunus.measure import branch_of_rows, branches
 from prunus.simulate.row import NONE
 from prunus.simulate.scan import Scan, simulate_scan
 from prunus.simulate.settings import Setting
+from prunus.workers import in_order
 
 MILLIMETRE = 1e-3
 """Depth images count millimetres."""
@@ -34,11 +33,7 @@ def simulate_orchard(
 ) -> Iterator[Path]:
     """Simulate and write one tree a seed; the folders as they are done."""
     make = partial(simulate_tree, folder, setting=setting, views=views)
-    if jobs == 1:
-        yield from map(make, seeds)
-        return
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        yield from pool.map(make, seeds)
+    yield from in_order(make, seeds, jobs)
 
 
 def simulate_tree(folder: Path, seed: int, setting: Setting, views: bool) -> Path:
@@ -49,17 +44,18 @@ def simulate_tree(folder: Path, seed: int, setting: Setting, views: bool) -> Pat
 
 
 def write_simulated(folder: Path, scan: Scan, views: bool = False) -> None:
-    """Write a scan with its truth and, with `views`, the rig's images."""
+    """Write a scan with its truth and, with `views`, the rig's images; scan.ply comes last."""
     branch, label = np.full(len(scan.xyz), NONE), np.full(len(scan.xyz), NONE)
     for k, tree in enumerate(scan.row.trees):
         own = scan.tree == k
         branch[own] = branch_of_rows(branches(tree), len(tree))[scan.node[own]]
         label[own] = tree.label[scan.node[own]]
     truth = {"kind": scan.kind, "tree": scan.tree, "branch": branch, "label": label}
-    if views:
-        _write_views(folder, scan)
-    write_skeleton(folder / "truth.json", scan.truth)
-    write_scan(folder, scan.xyz, truth, scan.row.trees)
+    with written_together(folder, "scan.ply") as together:
+        if views:
+            _write_views(together, scan)
+        write_skeleton(together / "truth.json", scan.truth)
+        write_scan(together, scan.xyz, truth, scan.row.trees)
 
 
 def _write_views(folder: Path, scan: Scan) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -89,6 +90,8 @@ def open_network(path: Path, inputs: tuple[frozenset[str], ...], outputs: frozen
 
     Raises PrunusError where the file holds none.
     """
+    # Newer ones keep a record of every session in the home of the user, and would send it out.
+    os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
     import onnxruntime
 
     options = onnxruntime.SessionOptions()

@@ -9,6 +9,7 @@ from pathlib import Path
 from prunus.errors import OptionError, PrunusError
 from prunus.io.inputs import clouds_in, is_one, names_of, source_of
 from prunus.io.safely import check_readable
+from prunus.names import folder_name
 
 SKELETON = "skeleton.json"
 
@@ -33,6 +34,7 @@ def items_in(path: Path, output: Path) -> list[Item]:
     names = _names(sources)
     items: list[Item] = []
     for name, source in sorted(zip(names, sources, strict=True), key=itemgetter(0)):
+        name = folder_name(name)
         folder = output / name
         if folder.resolve() == source.parent.resolve():
             raise OptionError(f"{source}: lies where the work on it would be kept; say -o DIR")

@@ -1,8 +1,7 @@
-"""`prunus studio`: start the server, say where the page is, open it, wait for Ctrl-C."""
+"""`prunus studio`: start the server, say where the page is, open it, wait for a signal to end."""
 
 from __future__ import annotations
 
-import contextlib
 import os
 import sys
 import threading
@@ -27,7 +26,7 @@ def open_studio(
     browser: bool,
     say: Callable[[str], None],
 ) -> None:
-    """Serve the trees of a path until Ctrl-C. Off this machine there is always a token.
+    """Serve the trees of a path until a signal ends it. Off this machine there is always a token.
 
     Raises PrunusError where there is nothing to open, or viser is not installed.
     """
@@ -43,8 +42,7 @@ def open_studio(
             say(line)
         if browser and has_display():
             webbrowser.open(studio.url)
-        with contextlib.suppress(KeyboardInterrupt):
-            threading.Event().wait()
+        threading.Event().wait()
     finally:
         studio.stop()
 

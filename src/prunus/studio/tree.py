@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 
 from prunus.corrections import Act, Settings, State, Work, branch_names, status_of
-from prunus.errors import PrunusError
+from prunus.errors import PrunusError, describe
 from prunus.evaluate.edits import Edits, edits
 from prunus.intake import Scan
 from prunus.measure.cuts import Plan
@@ -139,9 +139,9 @@ class Tree:
             work = Work.open(self.item.source, self.item.folder, self.settings, seen=self._seen)
             with self.lock:
                 self.work = work
-        except PrunusError as error:
+        except Exception as error:  # whatever it is, the other trees and browsers go on
             with self.lock:
-                self.problem = str(error)
+                self.problem = describe(error)
         finally:
             with self.lock:
                 self.opening = False
