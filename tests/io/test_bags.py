@@ -363,3 +363,13 @@ def test_without_rosbags_the_extra_is_named(
     monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
     with pytest.raises(PrunusError, match=r"c.bag: .*pip install 'prunus\[bags\]'"):
         read_cloud(tmp_path / "c.bag")
+
+
+def test_an_index_that_promises_messages_which_are_not_there_is_refused(
+    mcap: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mcap.cloud("/points", table_of(XYZ))
+    folder = mcap.write(tmp_path)
+    monkeypatch.setattr(bags, "messages", lambda *_: iter(()))
+    with pytest.raises(PrunusError, match="no message on /points, though the index promises some"):
+        read_cloud(folder)

@@ -147,6 +147,12 @@ def test_what_the_header_does_not_tell_is_metres(
     assert cloud.xyz == pytest.approx(XYZ, abs=1e-6) and cloud.notes == notes
 
 
+def test_units_that_are_rounded_in_another_way_are_the_same(tmp_path: Path) -> None:
+    wkt = f'COMPD_CS["c",{PROJCS % FEET},VERT_CS["v",UNIT["ftUS",0.3048006096]]]'
+    cloud = read(tmp_path, las(WktCoordinateSystemVlr(wkt)))
+    assert cloud.notes == ["unit us-ft, as the header tells: all that is written is in metres"]
+
+
 def test_a_wide_scan_is_believed_where_its_header_tells_metres(tmp_path: Path) -> None:
     header = laspy.LasHeader(point_format=0)
     header.scales = np.full(3, 1e-3)

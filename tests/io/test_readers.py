@@ -86,6 +86,7 @@ def _row(cells: list[tuple[str, list[float]]], form: str) -> bytes:
     return b"".join(np.array(held, ORDERS[form] + kind).tobytes() for kind, held in cells)
 
 
+@settings(deadline=None)
 @given(plys())
 def test_a_ply_gives_its_points_whatever_stands_beside_them(case: tuple[np.ndarray, bytes]) -> None:
     xyz, content = case
@@ -93,6 +94,7 @@ def test_a_ply_gives_its_points_whatever_stands_beside_them(case: tuple[np.ndarr
     assert np.array_equal(np.column_stack([table[axis] for axis in "xyz"]), xyz)
 
 
+@settings(deadline=None)
 @given(plys(), st.data())
 def test_a_ply_cut_off_anywhere_gives_all_points_or_none(
     case: tuple[np.ndarray, bytes], data: st.DataObject
@@ -109,6 +111,7 @@ def test_a_ply_cut_off_anywhere_gives_all_points_or_none(
     assert len(found) == len(xyz) and np.array_equal(found[:whole], xyz[:whole])
 
 
+@settings(deadline=None)
 @given(
     CLOUDS,
     st.sampled_from(["ascii", "binary", "binary_compressed"]),
@@ -160,6 +163,7 @@ def test_a_pcd_gives_all_its_points_or_none(
 TYPES_OF = {"U 1": "u1", "I 2": "i2", "F 4": "f4", "F 8": "f8", "U 4": "u4"}
 
 
+@settings(deadline=None)
 @given(
     CLOUDS,
     st.sampled_from([" ", "\t", ",", ";", "|", ", "]),
@@ -190,6 +194,7 @@ def test_text_gives_its_points_wherever_their_columns_are(
     assert np.array_equal(read_text(end.join(lines).encode(coding), HERE).xyz, xyz)
 
 
+@settings(deadline=None)
 @given(CLOUDS, st.data())
 def test_text_cut_off_gives_the_rows_before_the_cut_or_a_refusal(
     xyz: np.ndarray, data: st.DataObject
@@ -206,6 +211,7 @@ def test_text_cut_off_gives_the_rows_before_the_cut_or_a_refusal(
         assert len(found) == len(xyz) or not whole
 
 
+@settings(deadline=None)
 @given(CLOUDS, st.sampled_from(["C", "F"]), st.sampled_from("<>"), st.integers(3, 6), st.data())
 def test_an_array_gives_all_its_points_or_none(
     xyz: np.ndarray, layout: str, order: str, columns: int, data: st.DataObject
@@ -277,7 +283,7 @@ def test_the_door_stops_nobody_who_leaves(error: type[BaseException]) -> None:
         raise error
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.sampled_from(sorted(READERS)), st.binary(min_size=1, max_size=300))
 def test_noise_is_refused_by_name(tmp_path: Path, ending: str, content: bytes) -> None:
     magic = {

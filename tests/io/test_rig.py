@@ -97,6 +97,37 @@ def test_partial_clouds_alone_lie_where_they_are(tmp_path: Path) -> None:
         assert view.nominal.apply(view.xyz) == pytest.approx(xyz)
 
 
+def test_what_a_mac_leaves_beside_the_files_is_no_view(tmp_path: Path) -> None:
+    write_cloud(tmp_path / "top_cloud.ply", np.eye(3))
+    (tmp_path / "._top_cloud.ply").write_bytes(b"\0\5\x16\7")
+    assert [view.name for view in read_rig(tmp_path)] == ["top_cloud.ply"]
+
+
+def npy_of(shape: str, body: bytes) -> bytes:
+    head = f"{{'descr': '<u2', 'fortran_order': False, 'shape': {shape}}}\n".encode()
+    return b"\x93NUMPY\1\0" + len(head).to_bytes(2, "little") + head + body
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        npy_of("(200000, 3000000)", bytes(12)),
+        npy_of("(2, 3)", bytes(11)),
+        npy_of("(2, 3", bytes(12)),
+        b"\x89PNG\r\n\x1a\n" + bytes(20),
+        b"P5 900000 900000 65535\n",
+    ],
+)
+@pytest.mark.parametrize("name", ["d.npy", "d.png"])
+def test_a_damaged_image_is_one_line(tmp_path: Path, name: str, content: bytes) -> None:
+    pytest.importorskip("PIL.Image")
+    write(tmp_path, record(depth=name))
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(PrunusError, match=rf"{name[0]}\{name[1:]}: .") as error:
+        read_rig(tmp_path)
+    assert "\n" not in str(error.value)
+
+
 def test_a_view_may_be_a_partial_cloud(tmp_path: Path) -> None:
     write_cloud(tmp_path / "part.ply", np.eye(3))
     write(tmp_path, record(cloud="part.ply", depth=None))

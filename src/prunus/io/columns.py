@@ -29,11 +29,12 @@ AXES = (
 COLOURS = (
     ("red", "green", "blue"),
     ("r", "g", "b"),
+    ("rf", "gf", "bf"),
     ("diffuse_red", "diffuse_green", "diffuse_blue"),
     ("rgb:0", "rgb:1", "rgb:2"),
     ("colors:0", "colors:1", "colors:2"),
 )
-"""Names by which red, green and blue go."""
+"""Names by which red, green and blue go (the third are CloudCompare's as shares of one)."""
 
 DARKEST = 32
 """Some point of a cloud with colours is as bright, of 255."""
@@ -74,6 +75,15 @@ def columns_of(table: Any, names: Sequence[str], path: Path | str) -> Columns:
     if colours is None:
         return xyz, None
     return xyz, colour_bytes(np.column_stack([table[names[column]] for column in colours]))
+
+
+def content_of(table: Any, names: Sequence[str], path: Path) -> Content:
+    """What named columns hold, with the unit behind their names; see `columns_of`."""
+    xyz, rgb = columns_of(table, names, path)
+    colours, notes = colours_among(names), list[str]()
+    if colours is not None and rgb is None:
+        notes.append(f"no colours: {', '.join(names[k] for k in colours)} hold something else")
+    return Content(xyz, rgb, unit_among(names, axes_among(names, path), path), notes)
 
 
 def axes_among(names: Sequence[str], path: Path | str) -> list[int]:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from prunus.errors import PrunusError
-from prunus.io.columns import Content, check_first, colour_bytes, columns_of
+from prunus.io.columns import Content, check_first, colour_bytes, content_of
 from prunus.model.arrays import Floats
 
 MAGIC = b"\x93NUMPY"
@@ -100,7 +100,7 @@ def _unpacked(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, path: Path) -> b
 
 def _content(values: NDArray[Any], path: Path) -> Content:
     if values.dtype.names:
-        return Content(*columns_of(values.reshape(-1), values.dtype.names, path))
+        return content_of(values.reshape(-1), values.dtype.names, path)
     found = f"holds {values.dtype} of shape {values.shape}"
     if values.dtype.kind not in "fiu" or values.ndim not in (2, 3) or values.shape[-1] < 3:
         across = ", transposed" if values.ndim == 2 and values.shape[0] == 3 else ""

@@ -7,14 +7,14 @@ be missing.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from prunus.errors import PrunusError
-from prunus.io.columns import Content, columns_of, unpacked
+from prunus.io.columns import Content, content_of, unpacked
 from prunus.io.ply import Table
 from prunus.io.safely import BYTE_ORDER_MARK
 
@@ -46,13 +46,14 @@ def read_pcd(content: bytes, path: Path) -> Content:
     read = {"ascii": _ascii, "binary": _binary, "binary_compressed": _compressed}[header.form]
     table = read(content, header, path)
     names = table.dtype.names or ()
-    xyz, rgb = columns_of(table, names, path)
+    found = content_of(table, names, path)
     packed = next((name for name in names if name.lower() in PACKED), None)
-    if rgb is None and packed is not None and not table.dtype[packed].shape:
-        rgb = unpacked(table[packed])
+    if found.rgb is None and packed is not None and not table.dtype[packed].shape:
+        found = replace(found, rgb=unpacked(table[packed]))
     moved = [float(number) for number in header.viewpoint] != [float(number) for number in STILL]
-    notes = ["the VIEWPOINT in the header was not applied: points are as they stand"] * moved
-    return Content(xyz, rgb, notes=notes)
+    if moved:
+        found.notes.append("the VIEWPOINT in the header was not applied: points are as they stand")
+    return found
 
 
 def _header(content: bytes, path: Path) -> _Header:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
-from prunus.io.columns import Content, columns_of
+from prunus.io.columns import Content, content_of
 from prunus.io.e57 import read_e57
 from prunus.io.las import read_las
 from prunus.io.numpyfiles import read_npy, read_npz
@@ -17,10 +18,10 @@ from prunus.io.units import unit_called
 
 def _read_ply(content: bytes, path: Path) -> Content:
     table = read_ply(content, path)["vertex"]
-    xyz, rgb = columns_of(table, table.dtype.names or (), path)
+    found = content_of(table, table.dtype.names or (), path)
     told = [c.partition("unit:")[2] for c in ply_comments(content, path) if "unit:" in c]
     units = {unit_called(words.split(";")[0]) for words in told}
-    return Content(xyz, rgb, units.pop() if len(units) == 1 else None)
+    return replace(found, metres=units.pop()) if len(units) == 1 else found
 
 
 READERS: dict[str, Callable[[bytes, Path], Content]] = {

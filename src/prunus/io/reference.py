@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from prunus.io.units import UNITS
+from prunus.io.units import UNITS, known
 
 MODEL, GEOGRAPHIC, PROJECTED = 1024, 2048, 3072
 """GeoTIFF keys: the kind of system, and the codes of a geographic and of a projected one."""
@@ -65,7 +65,7 @@ def of_keys(directory: bytes, doubles: bytes) -> Reference:
     metres = CODES.get(code.get(LINEAR, 0))
     if LINEAR_SIZE in keys and keys[LINEAR_SIZE][1] < len(numbers):
         size = float(numbers[keys[LINEAR_SIZE][1]])
-        metres = size if np.isfinite(size) and size > 0 and metres is None else metres
+        metres = known(size) if np.isfinite(size) and size > 0 and metres is None else metres
     projected = code.get(PROJECTED, 0)
     if metres is None and any(low <= projected <= high for low, high in IN_METRES):
         metres = UNITS["m"]
@@ -135,7 +135,7 @@ def _unit(system: Node) -> float | None:
     for name, held in [*own, *axes]:
         if name in ("UNIT", "LENGTHUNIT") and len(held) > 1 and isinstance(held[1], str):
             metres = float(held[1])
-            return metres if np.isfinite(metres) and metres > 0 else None
+            return known(metres) if np.isfinite(metres) and metres > 0 else None
     return None
 
 

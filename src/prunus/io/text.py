@@ -15,16 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from prunus.errors import PrunusError
-from prunus.io.columns import (
-    Content,
-    are_axes,
-    are_colours,
-    axes_among,
-    check_first,
-    colour_bytes,
-    colours_among,
-    unit_among,
-)
+from prunus.io.columns import Content, are_axes, are_colours, axes_among, check_first, content_of
 from prunus.io.safely import BYTE_ORDER_MARK
 from prunus.model.arrays import Bytes, Floats
 
@@ -56,7 +47,11 @@ def read_text(content: bytes, path: Path) -> Content:
     lines = _decoded(content, path).split("\n")
     layout = _layout(lines, path)
     rows, commas = _rows(lines, layout, path)
-    found = _named(rows, layout.names, path) if layout.names else _unnamed(rows, path)
+    if layout.names:
+        columns = dict(zip(layout.names, rows.T, strict=True))
+        found = content_of(columns, layout.names, path)
+    else:
+        found = _unnamed(rows, path)
     if commas:
         found.notes.append("decimal commas, read as points")
     return found
@@ -273,16 +268,6 @@ def _word_by_word(rows: list[str], layout: _Layout, path: Path) -> Floats:
                 raise PrunusError(f"{path}: line {number}: {word[:40]!r} is no number")
             held.append(float(word) if there else np.nan)
     return np.frombuffer(held, np.float64).reshape(-1, layout.width)
-
-
-def _named(rows: Floats, names: list[str], path: Path) -> Content:
-    axes = axes_among(names, path)
-    colours, rgb, notes = colours_among(names), None, []
-    if colours is not None:
-        rgb = colour_bytes(rows[:, colours])
-        if rgb is None:
-            notes.append(f"no colours: {', '.join(names[k] for k in colours)} hold something else")
-    return Content(rows[:, axes], rgb, unit_among(names, axes, path), notes)
 
 
 def _unnamed(rows: Floats, path: Path) -> Content:

@@ -37,6 +37,12 @@ def unit_called(word: str) -> float | None:
     return next((UNITS[u] for u, words in CALLED.items() if word == u or word in words), None)
 
 
+def known(metres: float) -> float:
+    """The length of the unit that so many metres are: headers round them."""
+    same = (length for length in UNITS.values() if abs(metres / length - 1) < SAME)
+    return next(same, metres)
+
+
 def unit_of(metres: float) -> str:
     """The name of a unit of so many metres."""
     same = (unit for unit, length in UNITS.items() if abs(metres / length - 1) < SAME)
