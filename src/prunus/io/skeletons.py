@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from prunus.errors import PrunusError
-from prunus.io.safely import read_marked, write_bytes
+from prunus.io.safely import path_of, read_marked, write_bytes
 from prunus.model import Floats, Label, Skeleton
 
 Word = Literal["trunk", "support", "leader", "side_branch"]
@@ -87,6 +87,9 @@ EVIDENCE = {name for name, field in SkeletonFile.model_fields.items() if field.d
 
 def write_skeleton(path: str | Path, skeleton: Skeleton, **evidence: Any) -> None:
     """Write `skeleton.json`; `evidence`: see `EVIDENCE`."""
+    path = path_of(path)
+    if not isinstance(skeleton, Skeleton):
+        raise PrunusError(f"{path}: {type(skeleton).__name__}; expected a Skeleton to write")
     record = SkeletonFile(
         nodes=skeleton.xyz.tolist(),
         parent=skeleton.parent.tolist(),
@@ -98,12 +101,12 @@ def write_skeleton(path: str | Path, skeleton: Skeleton, **evidence: Any) -> Non
     )
     rows = record.model_dump()
     lines = [f"  {json.dumps(key)}: {_compact(value)}" for key, value in rows.items()]
-    write_bytes(Path(path), ("{\n" + ",\n".join(lines) + "\n}\n").encode())
+    write_bytes(path, ("{\n" + ",\n".join(lines) + "\n}\n").encode())
 
 
 def read_record(path: str | Path) -> tuple[Skeleton, SkeletonFile]:
     """The skeleton, and all that its file says; PrunusError naming file and field otherwise."""
-    path = Path(path)
+    path = path_of(path)
     try:
         record = SkeletonFile.model_validate_json(read_marked(path))
     except ValidationError as error:
@@ -136,7 +139,8 @@ def read_skeleton(path: str | Path) -> Skeleton:
     """The skeleton of a `skeleton.json`, or of an SWC file, by the ending."""
     from prunus.io.export import read_swc
 
-    return read_swc(path) if Path(path).suffix.lower() == ".swc" else read_record(path)[0]
+    path = path_of(path)
+    return read_swc(path) if path.suffix.lower() == ".swc" else read_record(path)[0]
 
 
 def _nullable(values: Floats) -> list[float | None]:
