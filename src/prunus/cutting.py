@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from prunus import __version__
-from prunus.errors import PrunusError
+from prunus.errors import NoTreeError, PrunusError, naming
 from prunus.intake import Scan, open_scan
 from prunus.io.original import original_of
 from prunus.io.plans import PlanFile
@@ -76,7 +76,8 @@ def cut_file(source: Source, rules: CutRules) -> PlanFile:
     if source.is_skeleton:
         return _on_skeleton(source, rules)
     scan = open_scan(source.path, source.frame, source.unit)
-    result = skeletonize(scan.cloud, source.base, source.params, source.seed, source.scorer)
+    with naming(source.path):
+        result = skeletonize(scan.cloud, source.base, source.params, source.seed, source.scorer)
     plan = plan_cuts(result.refined, scan.cloud.xyz, rules)
     notes = [*scan.notes, *result.notes, *result.review]
     return plan_file(plan, scan.cloud.to_input, input=scan.record, notes=notes)
@@ -89,6 +90,8 @@ def _on_skeleton(source: Source, rules: CutRules) -> PlanFile:
         record, notes = told.input, list(told.review or ())
     else:
         skeleton = read_skeleton(path)
+    if len(skeleton) == 1:
+        raise NoTreeError(f"{path}: holds a base alone; expected a tree to cut")
     scan = None
     try:
         scan = _scan_of(source, record)
