@@ -534,9 +534,12 @@ def evaluate(
     records = [compare(*pair) for pair in waiting.watch(pairs, "pairs", len(pairs))]
     if csv is not None:
         write_bytes(csv, csv_bytes(records))
-    for hint in strangers(records):
-        waiting.say(hint)
     waiting.tell(map(dumps, records) if json else spread_lines(records))
+    hints = strangers(pairs, records)
+    for hint in hints:
+        waiting.say(hint)
+    if len(hints) == len(records):
+        raise typer.Exit(Status.FAILED)
 
 
 @app.command(rich_help_panel=LEARNING)

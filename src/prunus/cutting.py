@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from prunus import __version__
-from prunus.errors import PrunusError
+from prunus.errors import NoTreeError, PrunusError, naming
 from prunus.intake import Scan, open_scan
 from prunus.io.names import names_of
 from prunus.io.original import original_of
@@ -78,7 +78,8 @@ def cut_file(source: Source, rules: CutRules) -> PlanFile:
     if source.is_skeleton:
         return _on_skeleton(source, rules)
     scan = open_scan(source.path, source.frame, source.unit)
-    result = skeletonize(scan.cloud, source.base, source.params, source.seed, source.scorer)
+    with naming(source.path):
+        result = skeletonize(scan.cloud, source.base, source.params, source.seed, source.scorer)
     plan = plan_cuts(result.refined, scan.cloud.xyz, rules)
     notes = [*scan.notes, *result.notes, *result.review]
     told = {"skeleton_sha256": sha256_of(result.skeleton), "input": scan.record, "notes": notes}
@@ -91,6 +92,8 @@ def _on_skeleton(source: Source, rules: CutRules) -> PlanFile:
         skeleton, record = read_record(path)
     else:
         skeleton = read_skeleton(path)
+    if len(skeleton) == 1:
+        raise NoTreeError(f"{path}: holds a base alone; expected a tree to cut")
     notes = [] if record is None else list(record.review or ())
     sha256 = (record and record.refines) or sha256_of(skeleton)
     told: dict[str, Any] = {

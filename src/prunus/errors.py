@@ -7,6 +7,7 @@ import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import IntEnum
+from pathlib import Path
 
 from prunus.names import in_line
 
@@ -36,6 +37,17 @@ def blaming_the_command() -> Iterator[None]:
         yield
     except PrunusError as error:
         raise OptionError(str(error)) from error
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """What is wrong in here names the file."""
+    try:
+        yield
+    except PrunusError as error:
+        if str(path) in str(error):
+            raise
+        raise type(error)(f"{path}: {error}") from error
 
 
 class Status(IntEnum):

@@ -11,6 +11,7 @@ import numpy as np
 from prunus.errors import PrunusError
 from prunus.io.clouds import FileCloud
 from prunus.io.clouds import read_cloud as read_file
+from prunus.io.safely import path_of
 from prunus.model import FRAMES, PointCloud
 from prunus.sensing.level import find_turn
 from prunus.sensing.orient import find_frame, local_wood
@@ -36,9 +37,11 @@ def open_scan(path: str | Path, frame: str = "auto", unit: str | None = None) ->
 
     Raises PrunusError naming the file, what was found and what was expected.
     """
-    if frame not in (*FRAMES, "auto"):
+    if not isinstance(frame, str) or frame not in (*FRAMES, "auto"):
         raise PrunusError(f"unknown frame {frame!r}; expected auto, {', '.join(FRAMES)}")
-    file = read_file(path, unit)
+    if not isinstance(unit, str | None):
+        raise PrunusError(f"unknown unit {unit!r}; expected text")
+    file = read_file(path_of(path), unit)
     notes = list(file.notes)
     wood = local_wood(file.xyz)
     seems, why = find_frame(wood)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from prunus.errors import PrunusError
+from prunus.errors import NoTreeError, PrunusError
 from prunus.evaluate.curves import curve_measures, line_measures
 from prunus.evaluate.edits import edits, label_ratios, on_same_nodes
 from prunus.evaluate.found import branch_measures
@@ -15,13 +15,15 @@ from prunus.io.lines import READERS, checked_length, read_lines
 from prunus.io.records import PairRecord
 from prunus.io.skeletons import read_skeleton
 from prunus.io.tables import without_nan
-from prunus.model import Label, Lines, Skeleton
+from prunus.model import Floats, Label, Lines, Skeleton
 from prunus.names import as_text
 
 Record = dict[str, Any]
+Pair = tuple[str, Path, Path]
+"""The name of a pair, the skeleton, the gold standard."""
 
 
-def pairs_in(skeletons: Path, gold: Path) -> list[tuple[str, Path, Path]]:
+def pairs_in(skeletons: Path, gold: Path) -> list[Pair]:
     """Name, skeleton and gold standard of each pair; in folders those of the same name.
 
     A file has its own name, and `NAME/skeleton.json` or `NAME/truth.json` that of its folder. A
@@ -73,6 +75,8 @@ def compare(name: str, predicted: Path, gold: Path) -> Record:
     Without labels the geometry alone. A measure of nothing is None.
     """
     ours, theirs = _labelled(predicted), _labelled(gold)
+    if theirs is not None and len(theirs) == 1:
+        raise NoTreeError(f"{gold}: holds a base alone; expected a tree to measure against")
     if ours is None or theirs is None:
         measures = line_measures(read_lines(predicted), read_lines(gold))
         return _record({"name": name, "labels": False, **measures})
@@ -91,13 +95,34 @@ def _record(measures: Record) -> Record:
     return PairRecord.model_validate(without_nan(measures)).model_dump()
 
 
-def strangers(records: list[Record]) -> list[str]:
-    """A hint for each pair that has nothing in common."""
+def strangers(pairs: list[Pair], records: list[Record]) -> list[str]:
+    """A hint for each pair of which nothing of one lies by the other: zeros tell nothing then."""
     return [
-        f"{record['name']}: not 5 cm of one lie by the other; are both of one tree, in one frame?"
-        for record in records
+        f"{name}: nothing of one lies by the other: {_apart(ours, theirs)}; expected two skeletons "
+        "of one tree, in one frame and unit"
+        for (name, ours, theirs), record in zip(pairs, records, strict=True)
         if not record["geometry_recall"] and not record["geometry_precision"]
     ]
+
+
+def _apart(predicted: Path, gold: Path) -> str:
+    """How far two skeletons are from each other, and how much larger one is, in words."""
+    ours, theirs = (_some_nodes(path) for path in (predicted, gold))
+    nearest = min(float(np.linalg.norm(theirs - node, axis=1).min()) for node in ours)
+    sizes = [float(np.linalg.norm(np.ptp(nodes, axis=0))) for nodes in (ours, theirs)]
+    larger = max(sizes) / max(min(sizes), 1e-9)
+    words = f"the nearest nodes are {nearest:.2f} m apart"
+    return f"{words}, and one is {larger:.0f} times as large" if larger > OTHER_UNIT else words
+
+
+def _some_nodes(path: Path) -> Floats:
+    """At most `LOOKED_AT` nodes of a skeleton file."""
+    nodes = (_labelled(path) or read_lines(path)).xyz
+    return nodes[:: -(-len(nodes) // LOOKED_AT)]
+
+
+OTHER_UNIT, LOOKED_AT = 5.0, 2000
+"""Two skeletons of which one is so much larger are in two units; so many nodes are looked at."""
 
 
 def _labelled(path: Path) -> Skeleton | None:

@@ -30,7 +30,7 @@ from prunus.sensing.trunks import find_foot
 from prunus.stages.candidates import find_candidates
 from prunus.stages.confidence import EdgeScorer, check_scorer, hopeful, score_edges
 from prunus.stages.networks import NetworkScorer
-from prunus.stages.seeds import find_seeds, near_to
+from prunus.stages.seeds import find_seeds, near_to, out_of_weeds
 from prunus.stages.sidebranches import find_side_branches
 from prunus.stages.stubs import drop_stubs
 from prunus.stages.superpoints import find_superpoints
@@ -75,6 +75,8 @@ def follow(
 
     scan, notes, doubts = cloud, list[str](), list[str]()
     scored = _scored(cloud, scorer, params, rng, seconds)
+    if at is not None:
+        at, notes = out_of_weeds(scored, at)
     with timed(seconds, "isolate"):
         isolated = _isolated(cloud, scored, scorer, at, params, rng)
     if isolated is not None:
@@ -85,6 +87,9 @@ def follow(
     with timed(seconds, "seeds"):
         foot = None if at is not None else isolated.foot if isolated else find_foot(cloud, scored)
         hoped = hopeful(scored, scorer, params.confidence)
+        if at is not None:
+            at, told = out_of_weeds(hoped, at)
+            notes += told
         seeded, warnings = find_seeds(hoped, params, foot if at is None else at)
     if foot is not None:
         place = ", ".join(f"{value:.2f}" for value in cloud.to_input.apply(foot))

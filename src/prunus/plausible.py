@@ -11,11 +11,11 @@ import numpy as np
 
 from prunus.errors import NoTreeError
 from prunus.measure.remarks import explained_points
-from prunus.model import Label, Skeleton, Superpoints
+from prunus.model import Label, Skeleton
 from prunus.result import Result
 from prunus.sensing.diagnosis import LINE_M, spread
+from prunus.sensing.surroundings import Pieces
 from prunus.sensing.trunks import find_trunks
-from prunus.stages.context import moments
 
 LEAST_LENGTH_M = 0.30
 """A tree has so much wood."""
@@ -63,30 +63,30 @@ class Evidence:
             trunk = bool(find_trunks(graph.scored))
             trust = 1.0 if result.trust is None else result.trust.tree
         across = float(spread(graph.superpoints.cloud.xyz)[1])
-        linear = linearity(graph.superpoints)
+        linear = float(np.median(Pieces.of(graph.scored).linear))
         return cls(length, across, explained, linear, rise_of_leaders(skeleton), trunk, trust)
 
     def check(self) -> None:
         """Raise NoTreeError where it is no tree."""
         against = {
-            "no wood can be followed from its base": self.length == 0,
-            f"{self.length:.2f} m of wood; expected at least {LEAST_LENGTH_M:g} m": (
+            ": no wood can be followed from its base": self.length == 0,
+            f": {self.length:.2f} m of wood; expected at least {LEAST_LENGTH_M:g} m": (
                 self.length < LEAST_LENGTH_M
             ),
-            "but a straight line": self.across < LINE_M,
-            "but a surface or a heap": self.linear < LEAST_LINEAR,
-            f"its branches explain {self.explained:.0%} of the points": (
+            ", but a straight line": self.across < LINE_M,
+            ", but a surface or a heap": self.linear < LEAST_LINEAR,
+            f": its branches explain {self.explained:.0%} of the points": (
                 self.explained < LEAST_EXPLAINED
             ),
-            f"but a hedge or a heap of twigs: no trunk is in view, and {self._unexplained}": (
+            f", but a hedge or a heap of twigs: no trunk is in view, and {self._unexplained}": (
                 not self.trunk
             ),
-            f"but a hedge or a heap of twigs: {self.trust:.0%} of its edges are likely right, and "
+            f", but a hedge or a heap of twigs: {self.trust:.0%} of its edges are likely right and "
             f"{self._unexplained}": self.trust < LEAST_TRUST,
         }
         for words, is_so in against.items():
             if is_so:
-                raise NoTreeError(f"no tree was found: {words}")
+                raise NoTreeError(f"no tree was found{words}")
 
     @property
     def _unexplained(self) -> str:
@@ -102,12 +102,6 @@ class Evidence:
                 f"the leaders hardly rise ({self.rise:.1f} m a metre): is Z up (see --frame)?"
             )
         return found
-
-
-def linearity(superpoints: Superpoints) -> float:
-    """How much the median superpoint is a line: its spread along, less across, over along."""
-    along = np.linalg.eigvalsh(moments(superpoints))
-    return float(np.median((along[:, 2] - along[:, 1]) / along[:, 2]))
 
 
 def rise_of_leaders(skeleton: Skeleton) -> float:

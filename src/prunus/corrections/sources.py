@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from prunus.corrections.journal import Head
-from prunus.errors import PrunusError
+from prunus.errors import PrunusError, naming
 from prunus.intake import Scan, open_scan
 from prunus.io.inputs import source_of
 from prunus.io.original import called
@@ -151,10 +151,8 @@ def run(
 
 
 def _chain(path: Path, scan: Scan, settings: Settings, base: Point | None) -> Result:
-    try:
+    with naming(path):
         return skeletonize(scan.cloud, base, settings.params, settings.seed)
-    except PrunusError as error:
-        raise PrunusError(f"{path}: {error}") from error
 
 
 def _same(one: Skeleton, other: Skeleton) -> bool:

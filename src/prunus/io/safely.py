@@ -9,6 +9,7 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from prunus.errors import PrunusError
 from prunus.names import in_line
@@ -40,6 +41,17 @@ def parsing(named: object, kind: str) -> Iterator[None]:
     except BaseException as error:
         why = " ".join(str(error).split())[:200] or type(error).__name__
         raise PrunusError(f"{named}: not a readable {kind}: {why}") from error
+
+
+def path_of(name: Any) -> Path:
+    """The path that a caller named; PrunusError where it is none."""
+    try:
+        path = Path(os.fsdecode(name))
+    except TypeError:
+        raise PrunusError(f"path: {name!r:.80}; expected the name of a file") from None
+    if "\0" in str(path):
+        raise PrunusError(f"path: {name!r:.80}; expected no zero byte in a name")
+    return path
 
 
 def check_readable(path: Path) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from prunus.errors import PrunusError
-from prunus.io.safely import write_bytes
+from prunus.io.safely import path_of, write_bytes
 from prunus.model import Floats, Label, Skeleton
 from prunus.reading import in_words, record_in
 
@@ -113,6 +113,9 @@ def write_skeleton(path: str | Path, skeleton: Skeleton, **evidence: Any) -> Non
 
     PrunusError where it cannot be written, or a confidence or radius is none.
     """
+    path = path_of(path)
+    if not isinstance(skeleton, Skeleton):
+        raise PrunusError(f"{path}: {type(skeleton).__name__}; expected a Skeleton to write")
     with in_words(path, SkeletonFile):
         record = SkeletonFile(
             nodes=skeleton.xyz.tolist(),
@@ -125,12 +128,12 @@ def write_skeleton(path: str | Path, skeleton: Skeleton, **evidence: Any) -> Non
         )
     rows = record.model_dump()
     lines = [f"  {json.dumps(key)}: {_compact(value)}" for key, value in rows.items()]
-    write_bytes(Path(path), ("{\n" + ",\n".join(lines) + "\n}\n").encode())
+    write_bytes(path, ("{\n" + ",\n".join(lines) + "\n}\n").encode())
 
 
 def read_record(path: str | Path) -> tuple[Skeleton, SkeletonFile]:
     """The skeleton, and all that its file says; PrunusError naming file and field otherwise."""
-    path = Path(path)
+    path = path_of(path)
     record = record_in(path, SkeletonFile)
     _check_lengths(record, path)
     try:
@@ -182,7 +185,8 @@ def read_skeleton(path: str | Path) -> Skeleton:
     """The skeleton of a `skeleton.json`, or of an SWC file, by the ending."""
     from prunus.io.swc import read_swc
 
-    return read_swc(path) if Path(path).suffix.lower() == ".swc" else read_record(path)[0]
+    path = path_of(path)
+    return read_swc(path) if path.suffix.lower() == ".swc" else read_record(path)[0]
 
 
 def _nullable(values: Floats) -> list[float | None]:

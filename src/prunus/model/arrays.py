@@ -59,7 +59,7 @@ def _cast(found: NDArray[Any], wanted: np.dtype[Any], name: str) -> NDArray[Any]
         raise PrunusError(f"{name}: {OTHERS.get(found.dtype.kind, found.dtype)}; {expected}")
     try:
         array = found.astype(wanted)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise PrunusError(f"{name}: {error}; {expected}") from error
     if wanted.kind in "iu" and found.dtype != wanted and not np.array_equal(array, found):
         raise PrunusError(f"{name}: holds {found.min()} to {found.max()}; {expected} of {wanted}")

@@ -9,7 +9,7 @@ import numpy as np
 
 from prunus.errors import NoTreeError
 from prunus.kernels.neighbours import within
-from prunus.model import Floats, PointCloud
+from prunus.model import FRAMES, Floats, PointCloud
 from prunus.sensing.orient import find_frame, local_wood
 
 LOOKED_AT = 20_000
@@ -26,6 +26,8 @@ SPARSE_M = 0.02
 """Points so far from each other cannot either."""
 PLACES = 200
 """At so many points it is looked how far the next is."""
+UPRIGHT = 0.7
+"""Two upward directions are alike where their cosine is over this."""
 LINEAR = 0.35
 """Local wood is a line by so much, on average."""
 
@@ -93,8 +95,11 @@ def _large(cloud: PointCloud, xyz: Floats) -> str:
 
 
 def _lying(cloud: PointCloud, xyz: Floats) -> str:
-    seems, why = find_frame(local_wood(xyz))
-    return "" if seems == "z-up" else f"it seems to lie on its side, as {why}: try --frame {seems}"
+    """In the frame of the file, whose name is what can be said otherwise."""
+    seems, why = find_frame(local_wood(cloud.to_input.apply(xyz)))
+    if cloud.to_input.rotation[:, 2] @ FRAMES[seems][2] > UPRIGHT:
+        return ""
+    return f"it seems to lie on its side, as {why}: try --frame {seems}"
 
 
 def _no_branches(cloud: PointCloud, xyz: Floats) -> str:

@@ -166,10 +166,20 @@ class Scene:
         """What each point is to the tree with that base (3,)."""
         return self._isolated(self._likely(base), base)
 
-    def torn(self, tree: Isolated) -> float:
-        """How many superpoints were left out that sure edges join to a tree, for each of it."""
+    def _kinds(self, tree: Isolated) -> Ints:
+        """What each superpoint (N,) is to a tree, by its points."""
         kind = np.full(len(self.pieces.xyz), int(Kind.STRAY))
         kind[self.owner[self.owner >= 0]] = tree.kind[self.owner >= 0]
+        return kind
+
+    def linearity(self, tree: Isolated) -> float:
+        """How much the median superpoint of a tree looks like a piece of a branch, 0 to 1."""
+        own = self._kinds(tree) == Kind.TARGET
+        return float(np.median(self.pieces.linear[own])) if own.any() else 0.0
+
+    def torn(self, tree: Isolated) -> float:
+        """How many superpoints were left out that sure edges join to a tree, for each of it."""
+        kind = self._kinds(tree)
         own = kind == Kind.TARGET
         if not own.any():
             return 0.0

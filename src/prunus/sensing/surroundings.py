@@ -68,6 +68,12 @@ class Pieces:
         edges, confidence, category = scored.edges, scored.confidence, scored.category
         return cls(under.xyz, upward(axes[:, :, 2]), shape, edges, confidence, category, linked)
 
+    @property
+    def linear(self) -> Floats:
+        """How much each superpoint (N,) is a line: its spread along, less across, over along."""
+        along, across = self.shape[:, 1], self.shape[:, 2]
+        return np.asarray((along - across) / along)
+
     def turned(self, rotation: Floats) -> Pieces:
         """The same superpoints in a scan that was turned, or mirrored."""
         along = upward(self.along @ rotation.T)

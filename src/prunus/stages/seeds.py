@@ -24,8 +24,10 @@ FOOT_SHARE = 0.35
 """Wood at a foot is likely trunk, or the support that it bends into, by so much."""
 ABOVE_M = 0.30
 """A base so far above the lowest wood of its tree is worth a remark, metres."""
+MISTAKEN_M = 1.0
+"""A base so far from the tree may have been given in another unit or frame, metres."""
 UNITS = {"millimetres": 1e-3, "centimetres": 1e-2, "feet": 0.3048}
-"""In which a base may have been given by mistake, in metres."""
+"""In which a base may have been given, in metres."""
 
 
 def find_seeds(
@@ -42,7 +44,7 @@ def find_seeds(
             "no base was given: the lowest superpoint of the largest connected piece was taken"
         ]
     else:
-        root, warnings = superpoint_at(scored, np.asarray(base, np.float64))
+        root, warnings = nearest_superpoint(scored, np.asarray(base, np.float64)), []
     tips = find_tips(scored.xyz, scored.edges, scored.confidence, params)
     tips = tips[tips != root]
     if len(tips) == 0:
@@ -74,30 +76,34 @@ def find_tips(xyz: Floats, edges: Ints, confidence: Floats, params: Parameters) 
     return np.sort(ordered[first])
 
 
-def superpoint_at(scored: ScoredGraph, point: Floats) -> tuple[int, list[str]]:
-    """The superpoint at a base picked by hand, and a remark where it is not quite there.
-
-    That is the nearest, one with an edge where there is one; or the foot of a trunk above it.
-    Raises PrunusError where there is none.
-    """
+def nearest_superpoint(scored: ScoredGraph, point: Floats) -> int:
+    """The superpoint nearest to a base picked by hand, one with an edge where there is one."""
     distance = np.linalg.norm(scored.xyz - point, axis=1)
     reach = BASE_REACH * scored.candidates.superpoints.radius
-    if distance.min() <= reach:
-        joined = np.isin(np.arange(len(distance)), scored.edges) & (distance <= reach)
-        return int(np.where(joined, distance, distance + reach).argmin()), []
-    foot = foot_above(scored, point)
-    cloud = scored.candidates.superpoints.cloud
-    shown = _shown(cloud.to_input.apply(point))
-    if foot is None:
-        near = _shown(cloud.to_input.apply(scored.xyz[distance.argmin()]))
+    if distance.min() > reach:
+        place = scored.candidates.superpoints.cloud.to_input.apply
+        meant = _meant(scored, point) if distance.min() > MISTAKEN_M else ""
         raise PrunusError(
-            f"the base {shown} is {distance.min():.2f} m from the nearest part of the tree, "
-            f"{near}; expected at most {reach:.2f} m{_mistaken(scored, point, reach)}"
+            f"the base {_shown(place(point))} is {distance.min():.2f} m from the nearest part of "
+            f"the tree, {_shown(place(scored.xyz[distance.argmin()]))}; expected at most "
+            f"{reach:.2f} m (metres, in the frame of the file){meant}"
         )
-    below = scored.xyz[foot, 2] - point[2]
-    return foot, [
-        f"the base {shown} is {below:.2f} m below the lowest wood in view above it: weeds may hide "
-        "the foot of the trunk"
+    joined = np.isin(np.arange(len(distance)), scored.edges) & (distance <= reach)
+    return int(np.where(joined, distance, distance + reach).argmin())
+
+
+def out_of_weeds(scored: ScoredGraph, base: Floats) -> tuple[Floats, list[str]]:
+    """A base (3,) picked by hand, or the foot of the trunk above it, and a note on that.
+
+    Weeds may hide the foot: the lowest wood in view is up to `WEEDS_M` above the ground then.
+    """
+    foot = None if near_to(scored, base) else foot_above(scored, base)
+    if foot is None:
+        return base, []
+    shown = _shown(scored.candidates.superpoints.cloud.to_input.apply(base))
+    below = scored.xyz[foot, 2] - base[2]
+    return scored.xyz[foot], [
+        f"the base {shown} is {below:.2f} m below the lowest wood in view, which was taken"
     ]
 
 
@@ -106,7 +112,8 @@ def foot_above(scored: ScoredGraph, point: Floats) -> int | None:
     away = scored.xyz - point
     reach = BASE_REACH * scored.candidates.superpoints.radius
     above = (np.linalg.norm(away[:, :2], axis=1) <= reach) & (away[:, 2] > 0)
-    found = np.flatnonzero(above & (away[:, 2] <= WEEDS_M) & (thickness(scored) >= FOOT_SHARE))
+    low = away[:, 2] <= WEEDS_M + scored.candidates.superpoints.radius
+    found = np.flatnonzero(above & low & (thickness(scored) >= FOOT_SHARE))
     return int(found[away[found, 2].argmin()]) if len(found) else None
 
 
@@ -144,18 +151,20 @@ def doubts_of_base(scored: ScoredGraph, root: int) -> list[str]:
     return found
 
 
-def _mistaken(scored: ScoredGraph, point: Floats, reach: float) -> str:
-    """In which unit or frame a base that is far from the tree would be near it, in words."""
+def _meant(scored: ScoredGraph, point: Floats) -> str:
+    """The unit or frame in which a base that is far from the tree would be at it, in words."""
     to_file = scored.candidates.superpoints.cloud.to_input
     given = to_file.apply(point)
     meant = {f"in {unit}": given * metres for unit, metres in UNITS.items()}
     for name, to_house in FRAMES.items():
         meant[f"in the frame {name}"] = to_file.rotation @ to_house @ given
-    for words, place in meant.items():
-        away = np.linalg.norm(scored.xyz - to_file.inverse().apply(place), axis=1)
-        if away.min() <= reach:
-            return f": it seems to be given {words}; expected metres, in the frame of the file"
-    return " (the base is in metres, in the frame of the input file)"
+    away = {
+        words: float(np.linalg.norm(scored.xyz - to_file.inverse().apply(place), axis=1).min())
+        for words, place in meant.items()
+    }
+    best = min(away, key=lambda words: away[words])
+    near = away[best] <= BASE_REACH * scored.candidates.superpoints.radius
+    return f": is it given {best}?" if near else ""
 
 
 def near_to(scored: ScoredGraph, point: Floats) -> bool:

@@ -63,14 +63,16 @@ def find_superpoints(cloud: PointCloud, params: Cover, rng: np.random.Generator)
 
 
 def _check_crowd(cloud: PointCloud, superpoints: Floats, params: Cover) -> None:
-    """Raise PrunusError where points or edges of the superpoints (N, 3) would fill the memory."""
+    """Raise PrunusError where the superpoints (N, 3) would take all memory, or hours."""
     some = superpoints[:: max(1, len(superpoints) // LOOKED_AT)]
-    share = len(superpoints) / len(some)
-    for what, xyz, radius, most in (
-        ("points of superpoints", cloud.xyz, params.r_super, MOST_MEMBERS),
-        ("candidate edges", superpoints, 2 * params.r_super, MOST_EDGES),
+    points = len(within(cloud.xyz, some, params.r_super)[1]) / len(some)
+    met = len(within(superpoints, some, 2 * params.r_super)[1]) / len(some)
+    edges = len(superpoints) * met / 2
+    for what, count, most in (
+        ("points of superpoints", len(superpoints) * points, MOST_POINTS),
+        ("points of edges", edges * points, MOST_POINTS_OF_EDGES),
+        ("pairs of edges", edges * met, MOST_PAIRS),
     ):
-        count = share * len(within(xyz, some, radius)[1])
         if count > most:
             raise PrunusError(
                 f"{len(superpoints)} superpoints of r_super {params.r_super:g} m make about "
@@ -80,9 +82,9 @@ def _check_crowd(cloud: PointCloud, superpoints: Floats, params: Cover) -> None:
 
 
 LOOKED_AT = 200
-"""So many superpoints say how many points and edges all of them have, about."""
-MOST_MEMBERS, MOST_EDGES = 200_000_000, 1_000_000
-"""More are not worked with."""
+"""So many superpoints say how much all of them have, about."""
+MOST_POINTS, MOST_POINTS_OF_EDGES, MOST_PAIRS = 2e8, 1e9, 5e6
+"""As much takes 2 GB, two minutes, and 3 GB; a raw scan takes a hundredth."""
 
 
 @dataclass(frozen=True, eq=False)
