@@ -18,7 +18,7 @@ from prunus.errors import PrunusError
 from prunus.io.jsonl import append_line, read_lines_of
 from prunus.io.skeletons import InputRecord, Point
 from prunus.io.units import Unit
-from prunus.reading import record_of
+from prunus.reading import read_bytes, record_of
 
 Category = Literal["trunk", "support", "leader", "side_branch", "other"]
 CATEGORIES: tuple[Category, ...] = ("trunk", "support", "leader", "side_branch", "other")
@@ -123,7 +123,7 @@ def labels_in(folder: Path) -> list[Path]:
     """
     own = folder / "labels.jsonl"
     found = [own] if own.is_file() else sorted(folder.glob("*/labels.jsonl"))
-    return [path for path in found if b"\n" in path.read_bytes()]
+    return [path for path in found if b"\n" in read_bytes(path, empty=True)]
 
 
 def _check_same(path: Path, head: LabelHead) -> None:
