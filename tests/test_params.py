@@ -1,7 +1,9 @@
 """Parameters: one place, read and written, typos refused."""
 
+from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -46,6 +48,19 @@ def test_any_value_reads_back_exactly(r: float, K: int) -> None:
         ("[side_branches]\nangle_min = 3.0", "side_branches: angle_min 3.0 is over angle_max"),
         ("[input]\npoints = 'some'", "input.points"),
         ("[search", "not a TOML file"),
+        ("[search]\nK = true", "search.K: input should be no truth value; found True"),
+        (
+            "[superpoints]\nr_super = 1e-300",
+            "superpoints.r_super: .* greater than or equal to 0.01",
+        ),
+        ("[superpoints]\nr_super = 1e300", "superpoints.r_super: .* less than or equal to 1"),
+        ("[superpoints]\nalong = 0", "superpoints.along: .* greater"),
+        ("[superpoints]\nacross = -1", "superpoints.across: .* greater"),
+        ("[confidence]\nalpha_conf = 0.9999999999999999", "confidence.alpha_conf: .* 0.99"),
+        ("[search]\nK = 1000000000", "search.K: .* less than or equal to 100000"),
+        ("[turn]\np = inf", "turn.p: .*finite"),
+        ("search = 5", "search: input should be a valid dictionary.*found 5"),
+        ("\0", "not a TOML file"),
     ],
 )
 def test_a_wrong_file_is_refused_by_name(tmp_path: Path, text: str, message: str) -> None:
@@ -58,3 +73,24 @@ def test_a_wrong_file_is_refused_by_name(tmp_path: Path, text: str, message: str
 def test_a_missing_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(PrunusError, match=r"none.toml: cannot be read \(No such file"):
         Parameters.from_toml(tmp_path / "none.toml")
+
+
+@pytest.mark.parametrize("number", [np.int64(9), np.uint8(9), np.float64(9.0)])
+def test_numbers_of_numpy_are_numbers(number: object) -> None:
+    assert Parameters().changed("search", K=number).search.K == 9
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda: Parameters(search={"K": 0}), "params: search.K: .* found 0"),
+        (lambda: Parameters(serch={}), "params: serch: unknown parameter"),
+        (lambda: Parameters().changed("serch", K=1), "params: serch: unknown parameter"),
+        (lambda: Parameters.parse({1: 2}), "params: 1: unknown parameter"),
+        (lambda: Parameters.parse(None), "params: input should be a valid dictionary"),
+        (lambda: Parameters.from_toml(5), "params: 5; expected the name of a file"),
+    ],
+)
+def test_python_gets_the_same_refusals(make: Callable[[], object], says: str) -> None:
+    with pytest.raises(PrunusError, match=says):
+        make()

@@ -5,6 +5,7 @@ A skeleton of almost nothing, or of what is no wood, is a failure and not an ans
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,12 +14,14 @@ from prunus.errors import NoTreeError
 from prunus.measure.remarks import explained_points
 from prunus.model import Label, Skeleton
 from prunus.result import Result
-from prunus.sensing.diagnosis import LINE_M, spread
+from prunus.sensing.diagnosis import LINE_M, STEP_M, coarse_words, coarseness, spread
 from prunus.sensing.surroundings import Pieces
 from prunus.sensing.trunks import find_trunks
 
 LEAST_LENGTH_M = 0.30
 """A tree has so much wood."""
+MOST_STEP_M = 0.08
+"""In steps so large, as far apart as superpoints are, coordinates tell nothing of a tree."""
 LEAST_EXPLAINED = 0.10
 """A skeleton passes so large a share of the points of its tree."""
 MOST_EXPLAINED = 0.50
@@ -40,7 +43,8 @@ class Evidence:
 
     length: metres of skeleton; across: how far its points are off one line, metres; explained: the
     share of them within r_super of it; linear: how much the median superpoint looks like a piece
-    of a branch, 0 to 1; rise: metres up a metre of leader. Of a scorer that tells categories:
+    of a branch, 0 to 1; rise: metres up a metre of leader; step: in which the coordinates come,
+    metres. Of a scorer that tells categories:
     trunk, whether one is in view; trust, the share of the edges that are likely right, asked for
     where little is explained.
     """
@@ -50,6 +54,7 @@ class Evidence:
     explained: float
     linear: float
     rise: float
+    step: float = 0.0
     trunk: bool = True
     trust: float = 1.0
 
@@ -64,37 +69,38 @@ class Evidence:
             trust = 1.0 if result.trust is None else result.trust.tree
         across = float(spread(graph.superpoints.cloud.xyz)[1])
         linear = float(np.median(Pieces.of(graph.scored).linear))
-        return cls(length, across, explained, linear, rise_of_leaders(skeleton), trunk, trust)
+        rise, step = rise_of_leaders(skeleton), coarseness(result.scan)
+        return cls(length, across, explained, linear, rise, step, trunk, trust)
 
     def check(self) -> None:
         """Raise NoTreeError where it is no tree."""
-        against = {
-            ": no wood can be followed from its base": self.length == 0,
-            f": {self.length:.2f} m of wood; expected at least {LEAST_LENGTH_M:g} m": (
-                self.length < LEAST_LENGTH_M
-            ),
-            ", but a straight line": self.across < LINE_M,
-            ", but a surface or a heap": self.linear < LEAST_LINEAR,
-            f": its branches explain {self.explained:.0%} of the points": (
-                self.explained < LEAST_EXPLAINED
-            ),
-            f", but a hedge or a heap of twigs: no trunk is in view, and {self._unexplained}": (
-                not self.trunk
-            ),
-            f", but a hedge or a heap of twigs: {self.trust:.0%} of its edges are likely right and "
-            f"{self._unexplained}": self.trust < LEAST_TRUST,
-        }
-        for words, is_so in against.items():
-            if is_so:
-                raise NoTreeError(f"no tree was found{words}")
+        for reason in self._against():
+            raise NoTreeError(f"no tree was found{reason}")
 
-    @property
-    def _unexplained(self) -> str:
-        return f"{1 - self.explained:.0%} of the points are not explained by any branch"
+    def _against(self) -> Iterator[str]:
+        if self.length == 0:
+            yield ": no wood can be followed from its base"
+        if self.length < LEAST_LENGTH_M:
+            yield f": {self.length:.2f} m of wood; expected at least {LEAST_LENGTH_M:g} m"
+        if self.step >= MOST_STEP_M:
+            yield ""
+        if self.across < LINE_M:
+            yield ", but a straight line"
+        if self.linear < LEAST_LINEAR:
+            yield ", but a surface or a heap"
+        if self.explained < LEAST_EXPLAINED:
+            yield f": its branches explain {self.explained:.0%} of the points"
+        heap = f", but a hedge or a heap of twigs: {1 - self.explained:.0%} of the points are not"
+        if not self.trunk:
+            yield f"{heap} explained by any branch, and no trunk is in view"
+        if self.trust < LEAST_TRUST:
+            yield f"{heap} explained by any branch, and {self.trust:.0%} of its edges likely right"
 
     def doubts(self) -> list[str]:
         """Why it may be none."""
         found = []
+        if self.step >= STEP_M:
+            found.append(coarse_words(self.step))
         if self.linear < USUAL_LINEAR:
             found.append("much of the cloud is not like branches, but like surfaces or heaps")
         if 0 < self.rise < USUAL_RISE:

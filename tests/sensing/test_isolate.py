@@ -1,5 +1,7 @@
 """One tree out of a raw scan of a simulated row whose every point is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -118,3 +120,28 @@ def test_the_foot_of_a_round_post_seen_from_the_front(rng: np.random.Generator) 
 def test_the_trunk_of_a_tree_is_found(scene: Scene, row: Scan) -> None:
     bases = scene.cloud.to_input.apply(np.array([trunk.base for trunk in scene.trunks]))
     assert np.linalg.norm(bases - row.truth.xyz[0], axis=1).min() < 0.15
+
+
+def test_wood_that_hangs_on_the_tree_and_was_left_out_is_said(row: Scan) -> None:
+    cloud = PointCloud.from_xyz(row.xyz[row.kind == Kind.TARGET])
+    scene = look_at(cloud, Parameters(), np.random.default_rng(0))
+    whole = isolate(scene, None)
+    assert scene.torn(whole) < 0.1
+    beside = cloud.xyz[:, 0] > np.quantile(cloud.xyz[:, 0], 0.35)
+    half = replace(whole, kind=np.where(beside, Kind.NEIGHBOUR, whole.kind))
+    assert scene.torn(half) > 0.4
+    assert "--no-isolate" in replace(half, torn=scene.torn(half)).doubts()[0]
+    assert replace(whole, torn=scene.torn(whole)).doubts() == []
+
+
+def test_trees_look_like_branches_and_the_ground_does_not(row: Scan, scene: Scene) -> None:
+    found = isolate(scene, None)
+    assert scene.linearity(found) > 0.5
+    ground = replace(found, kind=np.where(found.kind == Kind.GROUND, Kind.TARGET, Kind.STRAY))
+    assert scene.linearity(ground) < 0.45
+
+
+def test_a_point_below_a_trunk_means_it_though_weeds_hide_its_foot(scene: Scene) -> None:
+    base = scene.trees[0].base
+    below = isolate(scene, base - [0.0, 0.0, 0.45])
+    assert np.array_equal(below.base, base)

@@ -10,6 +10,7 @@ from prunus.errors import PrunusError
 from prunus.model import CandidateGraph, PointCloud, Superpoints
 from prunus.params import Parameters
 from prunus.stages.candidates import find_candidates
+from prunus.stages.confidence import score_edges
 from prunus.stages.context import MET, context_of, edges_met
 from prunus.stages.networks import NetworkScorer
 from prunus.stages.superpoints import find_superpoints
@@ -81,8 +82,71 @@ def test_the_edge_that_goes_straight_on_comes_first() -> None:
     assert (context.meeting[context.met < 0] == 0).all()
 
 
-def test_a_file_that_is_no_network_is_refused_by_name(tmp_path: Path) -> None:
-    (tmp_path / "bad.onnx").write_bytes(b"not a network")
-    for name, said in (("bad.onnx", "not an ONNX file"), ("none.onnx", "cannot be read")):
-        with pytest.raises(PrunusError, match=f"{name}: {said}"):
-            NetworkScorer(tmp_path / name)(graph())
+SHIPPED = NetworkScorer.shipped("ours").path
+
+
+def other_network(inputs: dict[str, tuple[int, list[object]]], outputs: list[str]) -> bytes:
+    """A network that adds up its first input, and gives that under each name."""
+    onnx = pytest.importorskip("onnx")
+    some = [
+        onnx.helper.make_tensor_value_info(name, kind, shape)
+        for name, (kind, shape) in inputs.items()
+    ]
+    gives = [onnx.helper.make_tensor_value_info(name, 1, [1]) for name in outputs]
+    nodes = [
+        onnx.helper.make_node("ReduceSum", [next(iter(inputs))], [name], keepdims=0)
+        for name in outputs
+    ]
+    graph = onnx.helper.make_graph(nodes, "other", some, gives)
+    opset = [onnx.helper.make_opsetid("", 13)]
+    model = onnx.helper.make_model(graph, opset_imports=opset, ir_version=8)
+    return model.SerializeToString()
+
+
+ASKED = {"image": (1, ["E", 16, 32]), "description": (1, ["E", 4])}
+OTHERS = {
+    "text": (lambda: b"not a network", "not an ONNX file"),
+    "nothing": (lambda: b"", "not an ONNX file"),
+    "json": (lambda: b'{"K": 1}', "not an ONNX file"),
+    "cut off": (lambda: SHIPPED.read_bytes()[:-2000], "not an ONNX file"),
+    "half": (lambda: SHIPPED.read_bytes()[: len(SHIPPED.read_bytes()) // 2], "not an ONNX file"),
+    "of isolation": (SHIPPED.with_name("isolate.onnx").read_bytes, "a network from .*'near'"),
+    "of pictures": (
+        lambda: other_network({"input": (1, [1, 3, 8, 8])}, ["logits"]),
+        r"a network from \['input'\] to \['logits'\]; expected one that `prunus train` made",
+    ),
+    "of other sizes": (
+        lambda: other_network(ASKED | {"image": (1, ["E", 8, 8])}, ["confidence", "category"]),
+        "the network does not take what it is shown",
+    ),
+    "of other kinds": (
+        lambda: other_network(ASKED | {"image": (7, ["E", 16, 32])}, ["confidence", "category"]),
+        "not an ONNX file|the network does not take what it is shown",
+    ),
+    "of another answer": (
+        lambda: other_network(ASKED, ["confidence", "category"]),
+        r"confidence: shape \(\); expected",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", OTHERS)
+def test_weights_that_are_none_are_refused_by_name(kind: str, tmp_path: Path) -> None:
+    make, says = OTHERS[kind]
+    path = tmp_path / "mine.onnx"
+    path.write_bytes(make())
+    with pytest.raises(PrunusError, match=f"mine.onnx: {says}"):
+        score_edges(graph(), NetworkScorer(path))
+
+
+def test_a_missing_file_or_a_folder_is_refused(tmp_path: Path) -> None:
+    for path in (tmp_path / "none.onnx", tmp_path):
+        with pytest.raises(PrunusError, match=f"{path.name}: cannot be read"):
+            NetworkScorer(path)(graph())
+    with pytest.raises(PrunusError, match="network: 5; expected the name of an ONNX file"):
+        NetworkScorer(5)
+
+
+def test_own_weights_may_be_named_by_text() -> None:
+    scorer = NetworkScorer(str(SHIPPED))
+    assert np.array_equal(scorer(graph()), NetworkScorer.shipped("ours")(graph()))

@@ -164,3 +164,19 @@ def test_superpoints_in_one_place_get_no_edge() -> None:
     found = find_candidates(same)
     assert isinstance(found, CandidateGraph)
     assert len(found.edges) == 0
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"r_super": 1.0, "along": 0.01, "across": 0.01}, "points of edges"),
+        ({"r_super": 0.2, "along": 0.01, "across": 0.01, "min_points": 1}, "pairs of edges"),
+    ],
+)
+def test_parameters_that_would_fill_the_memory_are_refused_before(
+    change: dict[str, float], says: str, rng: np.random.Generator
+) -> None:
+    sticks = [rod([0.1 * k, 0, 0], [0.1 * k, 0, 2], rng, 3000) for k in range(6)]
+    cover = PARAMS.superpoints.model_copy(update=change)
+    with pytest.raises(PrunusError, match=f"{says}; expected at most .*a smaller r_super"):
+        find_superpoints(PointCloud.from_xyz(np.concatenate(sticks)), cover, rng)

@@ -21,7 +21,9 @@ SMALL_M, LARGE_M = 0.30, 12.0
 LINE_M, PLANE_M = 0.002, 0.010
 """Points on a line, and in a plane, are so near to it (root mean square)."""
 STEP_M = 0.02
-"""Coordinates in such steps cannot show a branch."""
+"""Coordinates in such steps hardly show a branch."""
+FEW, EVEN = 3, 0.01
+"""Of fewer differences no step is told; they are whole steps but for so much of one."""
 SPARSE_M = 0.02
 """Points so far from each other cannot either."""
 PLACES = 200
@@ -62,19 +64,13 @@ def _flat(cloud: PointCloud, xyz: Floats) -> str:
     off_plane, off_line, _ = spread(xyz)
     if off_line < LINE_M:
         return "all points lie on one line"
-    return "all points lie in one plane" if off_plane < PLANE_M else ""
+    flat = off_plane < PLANE_M < 0.2 * off_line
+    return "all points lie in one plane" if flat else ""
 
 
 def _coarse(cloud: PointCloud, xyz: Floats) -> str:
-    """In the frame of the file: steps of levelled coordinates are none."""
-    for axis, values in zip("XYZ", cloud.to_input.apply(xyz).T, strict=True):
-        steps = np.diff(np.unique(np.round(values, 4)))
-        if len(steps) and steps.min() >= STEP_M:
-            return (
-                f"the coordinates along {axis} come in steps of {steps.min():.3g} m: single "
-                "precision, or rounded? Expected double precision, or coordinates near the origin"
-            )
-    return ""
+    step = coarseness(cloud)
+    return coarse_words(step) if step >= STEP_M else ""
 
 
 def _sparse(cloud: PointCloud, xyz: Floats) -> str:
@@ -112,6 +108,31 @@ LOOKS: tuple[Callable[[PointCloud, Floats], str], ...] = (
     _small, _flat, _coarse, _sparse, _large, _lying, _no_branches,
 )  # fmt: skip
 """What is looked for, in this order: a sentence, or nothing."""
+
+
+def coarseness(cloud: PointCloud) -> float:
+    """The largest steps in which coordinates of a cloud come, metres; 0 where they come in none.
+
+    In the frame of the file: steps of levelled coordinates are none.
+    """
+    some = cloud.to_input.apply(cloud.xyz[:: max(1, len(cloud) // LOOKED_AT)])
+    return max(_step(values) for values in some.T)
+
+
+def _step(values: Floats) -> float:
+    apart = np.diff(np.unique(np.round(values, 4)))
+    if len(apart) < FEW:
+        return 0.0
+    count = apart / apart.min()
+    return float(apart.min()) if np.abs(count - np.rint(count)).max() < EVEN else 0.0
+
+
+def coarse_words(step: float) -> str:
+    """What such steps mean."""
+    return (
+        f"the coordinates come in steps of {step:.3g} m: single precision, or rounded? Expected "
+        "double precision, or coordinates near the origin"
+    )
 
 
 def spread(xyz: Floats) -> Floats:
