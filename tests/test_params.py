@@ -48,7 +48,7 @@ def test_any_value_reads_back_exactly(r: float, K: int) -> None:
         ("[side_branches]\nangle_min = 3.0", "side_branches: angle_min 3.0 is over angle_max"),
         ("[input]\npoints = 'some'", "input.points"),
         ("[search", "not a TOML file"),
-        ("[search]\nK = true", "search.K: input should be no truth value; found True"),
+        ("[search]\nK = true", "search.K: input should be no truth value"),
         (
             "[superpoints]\nr_super = 1e-300",
             "superpoints.r_super: .* greater than or equal to 0.01",
@@ -60,7 +60,7 @@ def test_any_value_reads_back_exactly(r: float, K: int) -> None:
         ("[search]\nK = 1000000000", "search.K: .* less than or equal to 100000"),
         ("[turn]\np = inf", "turn.p: .*finite"),
         ("search = 5", "search: input should be a valid dictionary.*found 5"),
-        ("\0", "not a TOML file"),
+        ("\0", "holds zero bytes"),
     ],
 )
 def test_a_wrong_file_is_refused_by_name(tmp_path: Path, text: str, message: str) -> None:
@@ -75,7 +75,7 @@ def test_a_missing_file_is_refused(tmp_path: Path) -> None:
         Parameters.from_toml(tmp_path / "none.toml")
 
 
-@pytest.mark.parametrize("number", [np.int64(9), np.uint8(9), np.float64(9.0)])
+@pytest.mark.parametrize("number", [np.int64(9), np.uint8(9)])
 def test_numbers_of_numpy_are_numbers(number: object) -> None:
     assert Parameters().changed("search", K=number).search.K == 9
 

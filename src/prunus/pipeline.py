@@ -132,7 +132,8 @@ def _scored(
     """All candidate edges of points drawn from a cloud, with their confidence."""
     with timed(seconds, "sample"):
         points = params.input.points
-        drawn = cloud.sample(None if points == "all" else points, rng)
+        even = cloud.evened(rng) if params.input.draw == "space" else cloud
+        drawn = even.sample(None if points == "all" else points, rng)
     with timed(seconds, "superpoints"):
         superpoints = find_superpoints(drawn, params.superpoints, rng)
     with timed(seconds, "candidates"):

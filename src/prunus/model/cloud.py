@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from prunus.errors import PrunusError
-from prunus.model.arrays import Bools, Bytes, Floats, Ints, frozen, snapped
+from prunus.model.arrays import Bools, Bytes, Floats, Ints, cubes, frozen, snapped
 
 FRAMES: dict[str, Floats] = {
     "z-up": np.eye(3),
@@ -18,6 +18,11 @@ FRAMES: dict[str, Floats] = {
 
 `optical` is a camera's frame: x right, y down, z forward.
 """
+
+
+CUBE_M, DENSEST, CHANCE = 0.02, 3.0, 12
+"""Side of the cubes in which density is looked at; the densest that stays as it is, in medians, and
+in points, since the density of a sparse cloud varies by chance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +105,22 @@ class PointCloud:
         """The cloud of these rows only, in the same frame."""
         rgb = None if self.rgb is None else self.rgb[rows]
         return PointCloud(self.xyz[rows], self.to_input, rgb)
+
+    def evened(self, rng: np.random.Generator) -> PointCloud:
+        """The cloud without the surplus of places that are much denser than most.
+
+        No cube of 2 cm keeps more than three times the median of all cubes; which of its points
+        stay is random. So a trunk that a scanner passed ten times does not starve the twigs.
+        """
+        _, cube, count = np.unique(cubes(self.xyz, CUBE_M), return_inverse=True, return_counts=True)
+        most = max(CHANCE, int(DENSEST * np.median(count)))
+        if count.max() <= most:
+            return self
+        # Its place (P,) among the points of its cube, these in random order.
+        order = rng.permutation(len(self))
+        order = order[np.argsort(cube[order], kind="stable")]
+        place = np.arange(len(self)) - np.repeat(np.cumsum(count) - count, count)
+        return self.take(np.sort(order[place < most]))
 
     def sample(self, count: int | None, rng: np.random.Generator) -> PointCloud:
         """At most `count` points drawn at random without replacement (None keeps all)."""
