@@ -320,14 +320,16 @@ def convert(
         Path | None, typer.Option(help="The cloud, to go into a bag (.mcap) with the tree.")
     ] = None,
     cuts: Annotated[
-        Path | None, typer.Option(help="A plan (see `prunus cuts`), to go into the bag as poses.")
+        Path | None, typer.Option(help="Its plan (see `prunus cuts`), to go into the bag as poses.")
     ] = None,
 ) -> None:
     """Convert skeletons and clouds to what others read.
 
-    Skeletons: .json .swc .ply .graphml .glb .gltf .obj .mtg .cylinders.csv .treeqsm.csv
+    Skeletons: .json .swc .ply .dxf .graphml .glb .gltf .obj .mtg .cylinders.csv .treeqsm.csv
     .txt (raycloudtools) .mcap (ROS 2). Clouds: .ply .xyz .txt .csv .npy .npz. What a kind of file
     cannot hold is said.
+
+    For CloudCompare, as coloured lines: `prunus convert out/refined.json tree.dxf`
 
     For Blender, thick as it is: `prunus convert out/refined.json tree.glb`
 

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from prunus.errors import PrunusError
 from prunus.io.export import write_graphml, write_ply
@@ -193,3 +195,34 @@ def test_what_is_wrong_is_said(tmp_path: Path, name: str, text: str, says: str) 
     with pytest.raises(PrunusError, match=says) as error:
         read_lines(path)
     assert str(path) in str(error.value)
+
+
+GOOD = {
+    "a.obj": OBJ.encode(),
+    "b.obj": b"v 0 0 0\nv 0 0 1\nv 0 1 1\nl -3 -2 \\\n-1\n",
+    "a.graphml": GRAPHML.encode(),
+    **{f"{name}.ply": ply("ascii", LINE_PLYS[name]) for name in LINE_PLYS},
+    **{f"{name}_.ply": ply("binary_little_endian", LINE_PLYS[name]) for name in LINE_PLYS},
+}
+
+
+@pytest.mark.parametrize("name", GOOD)
+@settings(deadline=None, max_examples=40)
+@given(data=st.data())
+def test_any_damage_is_read_or_refused(
+    tmp_path_factory: pytest.TempPathFactory, name: str, data: st.DataObject
+) -> None:
+    content = bytearray(GOOD[name])
+    for _ in range(data.draw(st.integers(1, 3))):
+        at = data.draw(st.integers(0, len(content) - 1))
+        content[at : at + data.draw(st.integers(0, 3))] = data.draw(st.binary(max_size=3))
+    if data.draw(st.booleans()):
+        del content[data.draw(st.integers(0, len(content))) :]
+    path = tmp_path_factory.mktemp("spoiled") / name
+    path.write_bytes(bytes(content))
+    try:
+        lines = read_lines(path)
+    except PrunusError as error:
+        assert "\n" not in str(error)
+    else:
+        assert np.isfinite(lines.xyz).all() and (lines.edges < len(lines.xyz)).all()
