@@ -65,6 +65,7 @@ class Status(IntEnum):
     DONE = 0, "all that was asked for is done"
     FAILED = 1, "an input failed, nothing was found in it, or an output cannot be written"
     WRONG_COMMAND = 2, "the command was wrong: an option, or a file that an option names"
+    HUNG_UP = 129, "stopped because its terminal was closed (SIGHUP)"
     INTERRUPTED = 130, "stopped by Ctrl-C (SIGINT)"
     TERMINATED = 143, "stopped by SIGTERM"
 

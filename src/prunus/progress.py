@@ -19,6 +19,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
+from prunus.names import in_line
+
 SOON_S = 1.5
 """A step is named once there was nothing to read for so long."""
 AGAIN_S = 30.0
@@ -121,7 +123,7 @@ class Waiting:
     def say(self, text: str) -> None:
         """A line for the person, on standard error."""
         with self.lock:
-            self.console.print(text, markup=False, soft_wrap=True)
+            self.console.print(in_line(text), markup=False, soft_wrap=True)
             self.spoken = self.clock()
 
     def tell(self, lines: Iterable[str]) -> None:
