@@ -1,24 +1,25 @@
 # Two words for a stranger: `make demo` and `make test`. Each makes in .venv what it lacks there.
 PYTHON ?= python3
 BIN := .venv/bin
-PIP := $(BIN)/python -m pip --disable-pip-version-check
+PIP := $(BIN)/python -m pip --disable-pip-version-check install
+PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile
 RUNS := .venv/.runs
 TOOLS := .venv/.tools
 LEARNS := .venv/.learns
 
-.PHONY: demo test every-test check format lint types arrows wheel release bench clean
+.PHONY: demo test everything every-test check format lint types arrows wheel release bench clean
 
 demo: $(RUNS)             ## a simulated scan through the whole chain, then the report
 	$(BIN)/prunus demo -o prunus-out/demo
 
 test: $(LEARNS)           ## the tests but the slow ones, import arrows and laws among them
-	$(BIN)/python -m pytest -m "not slow"
+	$(PYTEST) -m "not slow"
 	@echo "the tests that are marked slow were left out: make check runs them"
 
 check: format lint types every-test wheel   ## all that CI asks for
 
 every-test: $(LEARNS)     ## the tests, the slow ones too
-	$(BIN)/python -m pytest
+	$(PYTEST)
 
 format: $(TOOLS)
 	$(BIN)/ruff format --check .
@@ -44,22 +45,24 @@ release: check            ## all checks; what they tried lies in dist/; uploads 
 bench: $(TOOLS)           ## measure; figures go to the screen
 	$(BIN)/python -m bench
 
+everything: $(LEARNS)     ## .venv with all that the checks need
+
 $(RUNS): pyproject.toml
 	@echo "making .venv"
 	@$(PYTHON) -m venv .venv
 	@echo "installing what prunus needs to run"
-	@$(PIP) install -e .
+	@$(PIP) -e .
 	@touch $(RUNS)
 
 $(TOOLS): $(RUNS)
 	@echo "installing what its developers need: tests, types, format"
-	@$(PIP) install -e ".[dev]"
+	@$(PIP) -e ".[dev]"
 	@touch $(TOOLS)
 
 $(LEARNS): $(TOOLS)
 	@echo "installing what training needs: torch, which is large"
-	@$(PIP) install torch==2.13.0
-	@$(PIP) install -e ".[train]"
+	@$(PIP) torch==2.13.0
+	@$(PIP) -e ".[train]"
 	@touch $(LEARNS)
 
 clean:

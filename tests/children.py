@@ -31,11 +31,26 @@ def child(*words: object, **options: Any) -> Iterator[Child]:
     """
     command = [sys.executable, *map(str, words)]
     options = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True} | options
-    with subprocess.Popen(command, start_new_session=True, **options) as process:
+    with hearing_ctrl_c():
+        started = subprocess.Popen(command, start_new_session=True, **options)
+    with started as process:
         try:
             yield process
         finally:
             end(process)
+
+
+@contextmanager
+def hearing_ctrl_c() -> Iterator[None]:
+    """Children that begin here hear SIGINT, also where tests run in the background of a shell.
+
+    A signal that is ignored would be so in them too; one that is handled is theirs to handle.
+    """
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def prunus(*words: object, **options: Any) -> contextlib.AbstractContextManager[Child]:

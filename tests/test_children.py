@@ -1,5 +1,6 @@
 """No process outlives the test that started it."""
 
+import signal
 import textwrap
 
 import pytest
@@ -31,3 +32,15 @@ def test_a_child_ends_when_its_test_fails() -> None:
     with pytest.raises(ZeroDivisionError), child("-c", "input()") as process:
         raise ZeroDivisionError
     assert process.poll() is not None
+
+
+def test_a_child_hears_ctrl_c_where_its_parent_does_not() -> None:
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        code = "import signal; print(signal.getsignal(signal.SIGINT).__name__)"
+        with child("-c", code) as process:
+            assert process.stdout is not None
+            assert process.stdout.readline() == "default_int_handler\n"
+        assert signal.getsignal(signal.SIGINT) == signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGINT, before)

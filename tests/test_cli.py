@@ -150,6 +150,7 @@ def test_a_folder_goes_on_past_a_bad_file_and_says_so(
     assert (tmp_path / "out" / "tree" / "skeleton.json").exists()
 
 
+@pytest.mark.slow
 def test_two_jobs_do_the_same(scan: Path, quick: Path, tmp_path: Path) -> None:
     (tmp_path / "again.ply").write_bytes(scan.read_bytes())
     words = ["skeletonize", scan, tmp_path / "again.ply", "--params", quick, *FAST]
@@ -393,6 +394,7 @@ def test_help_loads_nothing_heavy() -> None:
     assert "heavy: []" in done.stdout
 
 
+@pytest.mark.slow
 def test_an_orchard_is_written_tree_by_tree(tmp_path: Path) -> None:
     done = prunus("simulate", "-n", 2, "-o", tmp_path / "orchard", "--seed", 5, "--jobs", 1)
     assert done.exit_code == 0, done.output

@@ -12,6 +12,7 @@ import prunus
 HOME = Path(prunus.__file__).parent
 PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())["project"]
 EXTRAS: dict[str, list[str]] = PROJECT["optional-dependencies"]
+BROUGHT_BY = packages_distributions()
 OWN_WORDS = {"all", "dev"}
 """Extras that gather others, or what only we need."""
 UNSEEN = {"scipy"}
@@ -51,7 +52,7 @@ def asked(node: ast.AST) -> list[str]:
 
 def distributions_of(package: str) -> set[str]:
     """What brings a package; one that is not installed is taken to be called like it."""
-    return {name.lower() for name in packages_distributions().get(package, [package])}
+    return {name.lower() for name in BROUGHT_BY.get(package, [package])}
 
 
 def test_every_import_is_declared() -> None:

@@ -7,7 +7,9 @@ import os
 import shutil
 import subprocess
 import sys
+from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from rich.console import Console
@@ -15,6 +17,7 @@ from rich.console import Console
 from prunus.io.clouds import write_cloud
 from prunus.progress import AGAIN_S, SOON_S, Step, Teller, Waiting
 from prunus.simulate.orchard import write_simulated
+from tests.children import Child, child
 from tests.conftest import field_scan
 from tests.test_statuses import COMMANDS
 
@@ -139,9 +142,9 @@ def test_a_step_counts_in_words() -> None:
     assert Step("fusing", None, 10.0).reminder(70.4) == "still fusing (60 s)"
 
 
-def started(words: list[str], **how: object) -> subprocess.Popen[bytes]:
+def started(words: list[str], **how: Any) -> AbstractContextManager[Child]:
     code = "import sys; from prunus.cli import main; sys.argv[0] = 'prunus'; main()"
-    return subprocess.Popen([sys.executable, "-c", code, *words], **how)  # type: ignore[call-overload,no-any-return]
+    return child("-c", code, *words, text=False, **how)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no terminals to play")

@@ -75,6 +75,7 @@ def silently(items: Iterable[Any], name: str, total: int) -> Iterable[Any]:
     return items
 
 
+@pytest.mark.slow
 def test_a_folder_of_scans_gives_a_network_that_tells_kinds(
     orchard: Path, tmp_path: Path, example: RowExample, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -69,6 +69,7 @@ def test_graphs_side_by_side_do_not_hear_each_other() -> None:
     assert torch.allclose(both[len(one.category) :], alone, atol=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["paper", "ours"])
 def test_training_learns_repeats_and_exports_what_it_learnt(name: str, tmp_path: Path) -> None:
     recipe = RECIPES[name](epochs=2 if name == "paper" else 12)
@@ -108,6 +109,7 @@ def silently(items, name, total):
     return items
 
 
+@pytest.mark.slow
 def test_a_folder_of_scans_gives_weights_and_tables(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

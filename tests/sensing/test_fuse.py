@@ -110,6 +110,7 @@ def test_partners_are_near_alike_and_of_other_views() -> None:
     assert found.tolist() == [[-1, 1, 4], [0, -1, 4], [-1, -1, 4], [-1, -1, -1], [0, 1, -1]]
 
 
+@pytest.mark.slow
 def test_poses_of_a_simulated_scan_are_refined() -> None:
     true = [view.pose for view in field_scan(FIELD).views]
     views = rig()
@@ -176,6 +177,7 @@ def test_views_without_points_and_views_that_share_nothing_are_refused(
         fuse([tree, CloudView("other", rods(rng) + 5.0, STILL)])
 
 
+@pytest.mark.slow
 def test_the_command_writes_the_cloud_and_says_the_residuals(tmp_path: Path) -> None:
     write_simulated(tmp_path / "rig", field_scan(FIELD), views=True)
     words = ["fuse", tmp_path / "rig", "-o", tmp_path / "raw.ply", "--report", tmp_path / "r.json"]
