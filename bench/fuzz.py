@@ -22,6 +22,7 @@ with atheris.instrument_imports(include=["prunus.io", "laspy", "rosbags", "zipfi
     import prunus.io
     from prunus.errors import PrunusError
     from prunus.io.clouds import _ply, _text, read_cloud
+    from prunus.io.inputs import is_bag
 
 OURS = (IndexError, KeyError, TypeError, AttributeError, UnboundLocalError, RecursionError)
 """Errors that say that code is wrong, not a file."""
@@ -171,7 +172,9 @@ def check(content: bytes, path: Path) -> None:
     try:
         read_cloud(path)
     except PrunusError as error:
-        if isinstance(error.__cause__, OURS) and _in_ours(error.__cause__):
+        ours = isinstance(error.__cause__, OURS) and _in_ours(error.__cause__)
+        # A recording brings the definitions of its messages, so which fields they have.
+        if ours and not (is_bag(path) and isinstance(error.__cause__, AttributeError)):
             raise error.__cause__ from None
 
 

@@ -1,5 +1,6 @@
 """E57: all scans of a file where their poses put them, in metres, without points that are none."""
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -70,6 +71,13 @@ def test_a_truncated_file_is_refused(tmp_path: Path, share: float) -> None:
     with pytest.raises(PrunusError, match=r"cut\.e57: not a readable E57 file: .") as error:
         read_cloud(tmp_path / "cut.e57")
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("name", [b"\xe4pfel.e57", b"a#1?.e57", "\u6a39 \u00e4.e57".encode()])
+def test_any_name_will_do(tmp_path: Path, name: bytes) -> None:
+    made = write(tmp_path / "a.e57", columns(XYZ))
+    path = made.rename(tmp_path / os.fsdecode(name))
+    assert read_cloud(path).xyz == pytest.approx(XYZ)
 
 
 def test_without_pye57_it_says_what_to_install(

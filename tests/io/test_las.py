@@ -206,6 +206,57 @@ def test_a_lying_header_is_refused_soon(
         read(tmp_path, change(las(form=form, packed=packed)), name=name)
 
 
+@pytest.mark.parametrize("form", [2, 7])
+@pytest.mark.parametrize("table", [-1, 0, 2**40, -(2**40), None])
+def test_a_damaged_table_of_chunks_is_refused(tmp_path: Path, form: int, table: int | None) -> None:
+    content = las(form=form, packed=True)
+    begin = int.from_bytes(content[96:100], "little")
+    at = int.from_bytes(content[begin : begin + 8], "little")
+    if table is None:
+        content = changed(content, at + 4, 2**32 - 1, 4)
+    else:
+        content = content[:begin] + table.to_bytes(8, "little", signed=True) + content[begin + 8 :]
+    with pytest.raises(PrunusError, match=r"a\.laz: truncated or damaged: a table of chunks"):
+        read(tmp_path, content, name="a.laz")
+
+
+@pytest.mark.parametrize("form", [6, 7, 8, 10])
+def test_a_damaged_layer_is_refused(tmp_path: Path, form: int) -> None:
+    content = las(form=form, packed=True)
+    begin = int.from_bytes(content[96:100], "little")
+    size = int.from_bytes(content[105:107], "little")
+    for layer in range(9):
+        torn = changed(content, begin + 8 + size + 4 + 4 * layer, 2**32 - 9, 4)
+        with pytest.raises(PrunusError, match=r"a\.laz: truncated or damaged: a chunk of points"):
+            read(tmp_path, torn, name="a.laz")
+
+
+def test_a_laz_that_does_not_say_how_it_is_packed_is_refused(tmp_path: Path) -> None:
+    content = las(packed=True).replace(b"laszip encoded", b"laszip decoded")
+    with pytest.raises(PrunusError, match=r"a\.laz: no record in the header says how"):
+        read(tmp_path, content, name="a.laz")
+
+
+@pytest.mark.parametrize(("at", "size"), [(12, 4), (36, 2), (42, 2)])
+def test_a_record_of_no_points_is_refused(tmp_path: Path, at: int, size: int) -> None:
+    content = las(packed=True)
+    record = content.index(b"laszip encoded") - 2 + 54
+    with pytest.raises(PrunusError, match=r"a\.laz: the record .* fits no such points"):
+        read(tmp_path, changed(content, record + at, 0, size), name="a.laz")
+
+
+@pytest.mark.parametrize("form", [0, 3, 6, 7, 8, 10])
+def test_many_chunks_and_further_bytes_are_read(tmp_path: Path, form: int) -> None:
+    header = laspy.LasHeader(point_format=form, version="1.4")
+    header.add_extra_dim(laspy.ExtraBytesParams("reflectance", "u2"))
+    header.scales = np.full(3, 1e-4)
+    held = laspy.LasData(header)
+    xyz = np.tile(XYZ, (1000, 1))
+    held.x, held.y, held.z = xyz.T
+    held.write(tmp_path / "a.laz")
+    assert read_cloud(tmp_path / "a.laz").xyz == pytest.approx(xyz, abs=1e-6)
+
+
 def test_brackets_without_end_are_an_error_of_the_file(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="too deep"):
         of_wkt("A[" * 10_000)

@@ -71,6 +71,7 @@ READ = {
     "eastings": "Northing,Easting,Elevation\n2.5,1.5,3.5\n5.5,4.5,6.5\n8.5,7.5,9.75\n",
     "positions": "pos_x\tpos_y\tpos_z\n" + rows("\t"),
     "numbers of columns": "0,1,2\n" + rows(","),
+    "units apart from the names": "X [m] Y [m] Z [m]\n" + rows(),
     "Excel's word of its separator": "sep=;\nx;y;z\n" + rows(";"),
     "units behind the names": "x[m], y[m], z (m)\n" + rows(","),
     "classes in words": "x;y;z;class\n" + rows(";", ("oak", "old oak", '"a;b"')),

@@ -6,10 +6,7 @@ through the `CameraInfo` beside it; several messages are joined where `tf` says 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from pathlib import Path
-from tempfile import TemporaryDirectory
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -18,7 +15,7 @@ from prunus.errors import PrunusError
 from prunus.io.columns import Columns
 from prunus.io.inputs import Source
 from prunus.io.messages import cloud_points, depth_points
-from prunus.io.safely import check_readable, parsing
+from prunus.io.safely import check_readable, parsing, plainly_named
 from prunus.io.topics import CLOUD, TRANSFORMS, camera_of, chosen, counted, messages
 from prunus.io.transforms import Transforms, frame_of, time_of
 from prunus.io.views import View, placed
@@ -41,22 +38,10 @@ def read_bag(source: Source) -> tuple[Floats, Bytes | None, list[str]]:
     reader, types = _rosbags(named)
     with (
         parsing(named, "bag"),
-        _plain(source.path) as path,
+        plainly_named(source.path) as path,
         reader([path], default_typestore=types) as bag,
     ):
         return _read(bag, source.topic, named)
-
-
-@contextmanager
-def _plain(path: Path) -> Iterator[Path]:
-    """The path, or a link to it where it holds what SQLite takes for marks of an address."""
-    if not set("#?%") & set(str(path)):
-        yield path
-        return
-    with TemporaryDirectory() as folder:
-        link = Path(folder) / f"bag{path.suffix}"
-        link.symlink_to(path.absolute())
-        yield link
 
 
 def _rosbags(named: str) -> tuple[Any, Any]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.io.columns import Columns, Content
+from prunus.io.safely import plainly_named
 from prunus.io.transforms import rotation
 from prunus.model.arrays import Bools, Bytes, Floats
 
@@ -28,7 +29,7 @@ def read_e57(content: bytes, path: Path) -> Content:
         raise PrunusError(
             f"{path}: E57 is read with pye57, which is not installed: pip install 'prunus[e57]'"
         ) from error
-    with pye57.E57(str(path)) as file:
+    with plainly_named(path) as plain, pye57.E57(str(plain)) as file:
         headers = [file.get_header(number) for number in range(file.scan_count)]
         promised = sum(header.point_count for header in headers)
         if promised > 8 * len(content):

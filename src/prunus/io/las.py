@@ -10,6 +10,7 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.io.columns import Content, colour_bytes
+from prunus.io.laz import check_chunks
 from prunus.io.reference import Reference, of_keys, of_wkt
 from prunus.io.units import unit_of
 from prunus.model.arrays import Floats
@@ -30,9 +31,13 @@ def read_las(content: bytes, path: Path) -> Content:
     import laspy
 
     _check_records(content, path)
-    with laspy.open(io.BytesIO(content), closefd=False) as las:
+    # One thread: the other reader of lazrs allocates whole chunks, as long as the file says.
+    one = [laspy.LazBackend.Lazrs]
+    with laspy.open(io.BytesIO(content), closefd=False, laz_backend=one) as las:
         header = las.header
         _check_size(header, len(content), path)
+        if header.are_points_compressed and header.point_count:
+            check_chunks(content, header, path)
         parts = [_columns(points) for points in las.chunk_iterator(_chunk(header))]
     xyz = np.concatenate([xyz for xyz, _, _ in parts]) if parts else np.empty((0, 3))
     colours = [rgb for _, rgb, _ in parts if rgb is not None]

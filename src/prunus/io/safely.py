@@ -43,6 +43,22 @@ def parsing(named: object, kind: str) -> Iterator[None]:
         raise PrunusError(f"{named}: not a readable {kind}: {why}") from error
 
 
+@contextlib.contextmanager
+def plainly_named(path: Path) -> Iterator[Path]:
+    """The path, or a link to it where its name trips libraries up.
+
+    SQLite takes some signs for marks of an address; a name that is no UTF-8 is no text elsewhere.
+    """
+    name = str(path)
+    if not set("#?%") & set(name) and name.isprintable():
+        yield path
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        link = Path(folder) / f"link{path.suffix}"
+        link.symlink_to(path.absolute())
+        yield link
+
+
 def path_of(name: Any) -> Path:
     """The path that a caller named; PrunusError where it is none."""
     try:

@@ -164,7 +164,7 @@ def _words(line: str, separator: str | None) -> list[str]:
 
 def _named_in(line: str, width: int | None) -> list[str]:
     """The names of x, y, z and others that a line holds, of so many columns; none otherwise."""
-    line = line.lstrip("#/%;! \t")
+    line = re.sub(r"\s+(?=[\[(])", "", line.lstrip("#/%;! \t"))
     for separator in SEPARATORS:
         names = _words(line, separator)
         names = names[1:] if names and names[0].endswith(":") else names
