@@ -63,7 +63,8 @@ def read_cloud(path: str | Path, unit: str | None = None) -> FileCloud:
     asked = None if unit is None else metres_in(unit)
     source = source_of(Path(path))
     if is_bag(source.path):
-        xyz, rgb, notes = read_bag(source)
+        with np.errstate(all="ignore"):
+            xyz, rgb, notes = read_bag(source)
         held = only_real(Content(xyz, rgb, notes=notes), source.full)
         sha256 = digest_of(source.path)
     else:
