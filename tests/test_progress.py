@@ -121,9 +121,11 @@ def test_what_the_library_warns_of_is_said_and_what_it_notes_is_not() -> None:
     assert said.waiting.ears not in logging.getLogger("prunus").handlers
 
 
-def test_a_name_that_is_no_text_is_shown_with_escapes(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_name_that_is_no_utf8_is_printed_as_it_is_written(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     Said().waiting.tell([os.fsdecode(b"tree\xff.ply: done")])
-    assert capsys.readouterr().out == "tree\\udcff.ply: done\n"
+    assert capsys.readouterr().out == "tree%FF.ply: done\n"
 
 
 def test_failures_among_many_are_told_again_at_the_end() -> None:

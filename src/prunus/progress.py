@@ -172,9 +172,9 @@ class _Ears(logging.Handler):
 
 
 def _printable(line: str) -> str:
-    """The line with what standard output cannot show (a name that is no text) as escapes."""
+    """The line with what standard output cannot show, as many letters in old encodings, escaped."""
     encoding = sys.stdout.encoding or "utf-8"
-    return line.encode(encoding, "backslashreplace").decode(encoding)
+    return in_line(line).encode(encoding, "backslashreplace").decode(encoding)
 
 
 class Teller:
