@@ -317,7 +317,8 @@ def test_skeletons_convert_to_wood_and_what_is_lost_is_said(tmp_path: Path, endi
     done = prunus("convert", tmp_path / "s.json", tmp_path / f"t{ending}")
     assert done.exit_code == 0, done.output
     assert (tmp_path / f"t{ending}").stat().st_size > 100
-    assert f"t{ending}: left out, as there is no place for it: superpoint\n" in done.stderr
+    left_out = next(line for line in done.stderr.splitlines() if "no place for it" in line)
+    assert f"t{ending}: left out" in left_out and "superpoint" in left_out
     unknown = f"the radius is unknown at {len(drawn)} of {len(drawn)} nodes: 5 mm was taken there"
     assert (unknown in done.stderr) == (ending != ".mtg")
     if ending not in (".glb", ".mcap"):

@@ -20,7 +20,7 @@ FRAMES: dict[str, Floats] = {
 """
 
 
-CUBE_M, DENSEST, CHANCE = 0.02, 3.0, 12
+CUBE_M, DENSEST, CHANCE = 0.02, 5.0, 12
 """Side of the cubes in which density is looked at; the densest that stays as it is, in medians, and
 in points, since the density of a sparse cloud varies by chance."""
 
@@ -109,10 +109,12 @@ class PointCloud:
     def evened(self, rng: np.random.Generator) -> PointCloud:
         """The cloud without the surplus of places that are much denser than most.
 
-        No cube of 2 cm keeps more than three times the median of all cubes; which of its points
+        No cube of 2 cm keeps more than five times the median of all cubes; which of its points
         stay is random. So a trunk that a scanner passed ten times does not starve the twigs.
         """
-        _, cube, count = np.unique(cubes(self.xyz, CUBE_M), return_inverse=True, return_counts=True)
+        # Cubes about the middle: a cloud turned half round falls into the same ones.
+        cell = cubes(np.rint(self.xyz / CUBE_M), 1.0)
+        _, cube, count = np.unique(cell, return_inverse=True, return_counts=True)
         most = max(CHANCE, int(DENSEST * np.median(count)))
         if count.max() <= most:
             return self
