@@ -60,7 +60,7 @@ class Input(_Group):
         50_000, "P", "points", "points >= 1 drawn at random from the cloud, or 'all'"
     )
     draw: Literal["space", "points"] = _number(
-        "space", "draw", "space, points", "space: places much denser than most give no more than "
+        "points", "draw", "space, points", "space: places much denser than most give no more than "
         "their share; points: each point is as likely as any other, as in the paper"
     )  # fmt: skip
 
@@ -221,7 +221,6 @@ class Parameters(_Group):
     def paper(cls) -> Parameters:
         """The method as the paper has it, without what we do beyond it."""
         return cls(
-            input=Input(draw="points"),
             isolation=Isolation(isolate="never"),
             superpoints=Cover(place="random"),
             confidence=Confidence(floor=0.0, edge_net="paper"),
