@@ -1,7 +1,7 @@
 """From a 3D point cloud of a dormant fruit tree to a labelled skeleton.
 
     import prunus
-    result = prunus.skeletonize(prunus.read_cloud("tree.ply"), base=(1.40, 0.90, 1.42))
+    result = prunus.skeletonize(prunus.read_cloud("tree.ply"))
     result.skeleton.to_networkx()
 
 Names are loaded when they are first used, so that `import prunus` is quick.

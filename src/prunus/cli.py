@@ -109,7 +109,7 @@ OutputFolder = Annotated[Path, typer.Option("-o", "--output", help="Folder to wr
 BasePoint = Annotated[
     Place | None,
     typer.Option(
-        "--base", "--at", help="Where the trunk meets the ground, in the file's frame and unit."
+        "--base", "--at", help="Where the trunk meets the ground: metres, in the frame of the file."
     ),
 ]
 FrameOfFile = Annotated[

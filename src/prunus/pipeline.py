@@ -73,10 +73,9 @@ def follow(
     rng = np.random.default_rng(seed)
     seconds: Seconds = {}
 
-    scan, notes, doubts = cloud, list[str](), list[str]()
+    scan, doubts = cloud, list[str]()
     scored = _scored(cloud, scorer, params, rng, seconds)
-    if at is not None:
-        at, notes = out_of_weeds(scored, at)
+    at, notes = out_of_weeds(scored, at)
     with timed(seconds, "isolate"):
         isolated = _isolated(cloud, scored, scorer, at, params, rng)
     if isolated is not None:
@@ -87,9 +86,8 @@ def follow(
     with timed(seconds, "seeds"):
         foot = None if at is not None else isolated.foot if isolated else find_foot(cloud, scored)
         hoped = hopeful(scored, scorer, params.confidence)
-        if at is not None:
-            at, told = out_of_weeds(hoped, at)
-            notes += told
+        at, told = out_of_weeds(hoped, at)
+        notes += told
         seeded, warnings = find_seeds(hoped, params, foot if at is None else at)
     if foot is not None:
         place = ", ".join(f"{value:.2f}" for value in cloud.to_input.apply(foot))

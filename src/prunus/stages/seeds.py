@@ -92,13 +92,13 @@ def nearest_superpoint(scored: ScoredGraph, point: Floats) -> int:
     return int(np.where(joined, distance, distance + reach).argmin())
 
 
-def out_of_weeds(scored: ScoredGraph, base: Floats) -> tuple[Floats, list[str]]:
-    """A base (3,) picked by hand, or the foot of the trunk above it, and a note on that.
+def out_of_weeds(scored: ScoredGraph, base: Floats | None) -> tuple[Floats | None, list[str]]:
+    """A base (3,) picked by hand, if any, or the foot of the trunk above it, and a note on that.
 
     Weeds may hide the foot: the lowest wood in view is up to `WEEDS_M` above the ground then.
     """
-    foot = None if near_to(scored, base) else foot_above(scored, base)
-    if foot is None:
+    foot = None if base is None or near_to(scored, base) else foot_above(scored, base)
+    if base is None or foot is None:
         return base, []
     shown = _shown(scored.candidates.superpoints.cloud.to_input.apply(base))
     below = scored.xyz[foot, 2] - base[2]
