@@ -18,8 +18,8 @@ from prunus.sensing.patches import Cells, Patches
 PATCH_M, PATCH_CELLS = 0.20, 5
 """Radius of the patches that are looked at, and in sides of the cells at least."""
 BROAD, THIN, FEWEST_CELLS = 0.35, 0.15, 12
-"""A patch is flat when it is so broad for its length, so thin for its breadth (variances), and of so
-many cells."""
+"""A patch is flat when it is so broad for its length, so thin for its breadth (variances), and
+holds so many cells."""
 BAND_M = 0.05
 """Ground rises and falls by so much."""
 PARALLEL = math.cos(math.radians(20))
@@ -42,8 +42,8 @@ STANDING_OF_ALL, TALL_M, SOLID, STEEPEST_DEG = 0.25, 0.70, 0.40, 25.0
 """so much with the lines in its plane; a tenth of the rest is so high over it; such a share of its
 area is held; and it is so near to level on some axis."""
 LAWN_BAND_M, LAWN_WIDTH_M, LAWN_FILL, ONE_WAY = 0.15, 1.5, 0.30, 0.70
-"""A lawn is rougher (grass, clods), so broad, filled less, and of its lines at most such a share runs
-one way, as the leaders of a row do."""
+"""A lawn is rougher (grass, clods), so broad, filled less, and of its lines at most such a share
+runs one way, as the leaders of a row do."""
 WAYS, SLAB_M, SLAB_CELLS = 200, 0.10, 8000
 """Lawns are looked for in the fullest slab of so many directions, among so many cells."""
 
@@ -98,7 +98,7 @@ class _Plane:
     def through(cls, xyz: Floats, band: float, lawn: bool = False) -> _Plane:
         """The plane nearest to points (Q, 3)."""
         middle = xyz.mean(axis=0)
-        return cls(np.linalg.eigh(np.cov((xyz - middle).T))[1][:, 0], middle, band, lawn)
+        return cls(np.linalg.eigh(np.cov((xyz - middle).T, bias=True))[1][:, 0], middle, band, lawn)
 
     @property
     def axes(self) -> Floats:
@@ -239,13 +239,13 @@ def _filled(places: Floats, side: float) -> tuple[Bools, float]:
 def _around(squares: Bools) -> Ints:
     """How many of the nine squares about each are held; the outermost hold nothing."""
     steps = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
-    return np.sum([np.roll(squares, step, (0, 1)) for step in steps], axis=0, dtype=np.int64)
+    return np.asarray(np.sum([np.roll(squares, step, (0, 1)) for step in steps], axis=0))
 
 
 def _measured(plane: _Plane, xyz: Floats, held: Ints) -> Ground | None:
     """The ground that some of the cells (N, 3) hold, if it is large enough."""
     places = (xyz[held] - plane.middle) @ plane.axes
-    variance, ways = np.linalg.eigh(np.cov(places.T))
+    variance, ways = np.linalg.eigh(np.cov(places.T, bias=True))
     width, length = np.sqrt(12 * np.maximum(variance, 0))
     if width < (LAWN_WIDTH_M if plane.lawn else LEAST_WIDTH_M) or width * length < LEAST_AREA_M2:
         return None

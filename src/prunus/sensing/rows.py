@@ -115,7 +115,7 @@ def row_of_trunks(cells: Cells) -> tuple[float, float]:
     feet = np.array([tall[trunk == one].mean(axis=0) for one in np.unique(trunk)])
     if len(feet) < TRUNKS:
         return 0.0, 0.0
-    way = np.linalg.eigh(np.cov((feet - feet.mean(axis=0)).T))[1][:, 1]
+    way = np.linalg.eigh(np.cov(feet.T, bias=True))[1][:, 1]
     off, along = (feet - feet.mean(axis=0)) @ [-way[1], way[0]], feet @ way
     if np.abs(off).max() > IN_LINE_M or np.ptp(along) < SPAN_M:
         return 0.0, 0.0
