@@ -32,6 +32,10 @@ class Input(_Group):
         50_000, "P", "points", "points >= 1 drawn at random from the cloud, or 'all'"
     )
 
+    draw: Literal["space", "points"] = _number(
+        "space", "-", "-", "'space': evenly over space; 'points': over points, as the paper"
+    )
+
     @field_validator("points", mode="before")
     @classmethod
     def _none_is_all(cls, value: Any) -> Any:
@@ -184,6 +188,7 @@ class Parameters(_Group):
     def paper(cls) -> Parameters:
         """The method as the paper has it, without what we do beyond it."""
         return cls(
+            input=Input(draw="points"),
             isolation=Isolation(isolate="never"),
             superpoints=Cover(place="random"),
             confidence=Confidence(floor=0.0, edge_net="paper"),

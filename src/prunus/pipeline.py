@@ -21,7 +21,7 @@ from prunus.search import (
     skel_score,
 )
 from prunus.sensing.isolate import Isolated, Scene, isolate, judged_graph
-from prunus.sensing.trunks import find_foot
+from prunus.sensing.trunks import FOOT_REACH_M, find_foot, on_wood
 from prunus.stages.candidates import find_candidates
 from prunus.stages.confidence import EdgeScorer, hopeful, score_edges
 from prunus.stages.networks import NetworkScorer
@@ -62,6 +62,7 @@ def skeletonize(
         notes.append(isolated.told())
     with timed(seconds, "seeds"):
         foot = None if at is not None else isolated.foot if isolated else find_foot(cloud, scored)
+        foot = on_wood(foot, scored)
         hoped = hopeful(scored, scorer, params.confidence)
         seeded, warnings = find_seeds(hoped, params, foot if at is None else at)
     if foot is not None:
@@ -90,7 +91,8 @@ def _scored(
     """All candidate edges of points drawn from a cloud, with their confidence."""
     with timed(seconds, "sample"):
         points = params.input.points
-        drawn = cloud.sample(None if points == "all" else points, rng)
+        evenly = params.input.draw == "space"
+        drawn = cloud.sample(None if points == "all" else points, rng, evenly)
     with timed(seconds, "superpoints"):
         superpoints = find_superpoints(drawn, params.superpoints, rng)
     with timed(seconds, "candidates"):
@@ -130,13 +132,9 @@ LEAST_LEFT = 0.02
 
 def _standing_at(foot: Floats, skeleton: Skeleton) -> Skeleton:
     """The skeleton with its base at the foot of its trunk, where that is beside its lowest node."""
-    if np.linalg.norm(skeleton.xyz[0] - foot) > FOOT_REACH:
+    if np.linalg.norm(skeleton.xyz[0] - foot) > FOOT_REACH_M:
         return skeleton
     return replace(skeleton, xyz=np.concatenate([foot[None], skeleton.xyz[1:]]))
-
-
-FOOT_REACH = 0.15
-"""The foot of a trunk is so near to its lowest superpoint, metres."""
 
 
 def best_skeleton(

@@ -119,7 +119,8 @@ def _head(path: Path, text: bytes) -> Head:
     except ValidationError as error:
         raise PrunusError(f"{path}:1: {problem_in('head', error)}") from error
     if head.frame not in (*FRAMES, "auto"):
-        raise PrunusError(f"{path}:1: unknown frame {head.frame!r}; expected auto, z-up, optical")
+        known = ", ".join(FRAMES)
+        raise PrunusError(f"{path}:1: unknown frame {head.frame!r}; expected auto, {known}")
     Parameters.parse(head.params, f"{path}:1")
     return head
 

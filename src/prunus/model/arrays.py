@@ -1,5 +1,6 @@
 """The array types of the model, and the one way arrays are frozen."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,20 @@ def cubes(xyz: Floats, side: float) -> Ints:
     """A number (P,) for the cube of that side, metres, in which each point (P, 3) lies."""
     place = np.floor((xyz - xyz.min(axis=0)) / side).astype(np.int64)
     return np.asarray((place[:, 0] << 42) | (place[:, 1] << 21) | place[:, 2])
+
+
+def cells(xyz: Floats, side: float, apart: int = 1) -> Ints:
+    """A number (P,) for the cube about a multiple of that side, metres, in which each point lies.
+
+    Cubes lie alike on both sides of the origin: half a turn about Z changes none. Numbers are
+    multiples of `apart`. Where they would be too large the cubes are larger.
+    """
+    place = np.rint(xyz / side).astype(np.int64)
+    place -= place.min(axis=0)
+    span = [int(most) + 1 for most in place.max(axis=0)]
+    if math.prod(span) * apart >= 2**63:
+        return cells(xyz, 2 * side, apart)
+    return np.asarray(((place[:, 0] * span[1] + place[:, 1]) * span[2] + place[:, 2]) * apart)
 
 
 def snapped(xyz: Floats) -> Floats:

@@ -8,16 +8,28 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from prunus.errors import PrunusError
-from prunus.model.arrays import Bools, Bytes, Floats, Ints, frozen, snapped
+from prunus.model.arrays import Bools, Bytes, Floats, Ints, cells, frozen, snapped
 
 FRAMES: dict[str, Floats] = {
     "z-up": np.eye(3),
+    "z-up-x-row": np.eye(3),
     "optical": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
+    "camera-link": np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
+    "y-up": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
+    "z-down": np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]),
+    "x-up": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]),
+    "x-down": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [-1.0, 0.0, 0.0]]),
 }
 """Named input frames -> rotation (3, 3) into the house frame: X along the row, Y depth, Z up.
 
-`optical` is a camera's frame: x right, y down, z forward.
+`optical` is a camera's frame: x right, y down, z forward. `camera-link` is ROS's body frame: x
+forward, y left, z up. `y-up` is that of graphics: x right, y up, z toward the viewer. The most
+usual frame of each upward axis comes first. docs/frames.md has them all.
 """
+
+ROW_TOLD = frozenset({"z-up-x-row", "optical", "camera-link"})
+"""Frames that say where the row runs: along X, or across the line of sight. In the others only the
+upward axis is known."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +82,9 @@ class PointCloud:
     ) -> PointCloud:
         """A cloud from points (P, 3), metres, in a named frame (see `FRAMES`).
 
-        `turn` (3, 3) is a further rotation, from there to the house frame.
+        Axes are turned as the name says and no further: nothing is levelled, and no row is looked
+        for, as `prunus.read_cloud` does. `turn` (3, 3) is a further rotation, from there to the
+        house frame; `prunus.sensing.stance.find_stance` finds one.
 
         The points are turned into the house frame and shifted to a local origin in double
         precision, so that large coordinates (UTM) keep their millimetres.
@@ -78,7 +92,7 @@ class PointCloud:
         """
         points = _checked(xyz)
         if frame not in FRAMES:
-            raise PrunusError(f"unknown frame {frame!r}; expected one of {sorted(FRAMES)}")
+            raise PrunusError(f"unknown frame {frame!r}; expected one of {', '.join(FRAMES)}")
         rotation = FRAMES[frame] if turn is None else turn @ FRAMES[frame]
         turned = points @ rotation.T
         middle = (turned.min(axis=0) + turned.max(axis=0)) / 2
@@ -90,11 +104,49 @@ class PointCloud:
         rgb = None if self.rgb is None else self.rgb[rows]
         return PointCloud(self.xyz[rows], self.to_input, rgb)
 
-    def sample(self, count: int | None, rng: np.random.Generator) -> PointCloud:
-        """At most `count` points drawn at random without replacement (None keeps all)."""
+    def sample(
+        self, count: int | None, rng: np.random.Generator, evenly: bool = False
+    ) -> PointCloud:
+        """At most `count` points drawn at random without replacement (None keeps all).
+
+        `evenly`: over space, so that what was scanned densely does not starve the rest. Where
+        points lie denser than in most places, they are thinned to that first.
+        """
         if count is None or count >= len(self):
             return self
-        return self.take(np.sort(rng.choice(len(self), count, replace=False, shuffle=False)))
+        rows = _thinned(self.xyz, count, rng) if evenly else np.arange(len(self))
+        drawn = rng.choice(len(rows), count, replace=False, shuffle=False)
+        return self.take(np.sort(rows[drawn]))
+
+
+EVEN_M = 0.02
+"""Density is told by cubes of that side."""
+
+
+def _thinned(xyz: Floats, count: int, rng: np.random.Generator) -> Ints:
+    """At least `count` rows of points (P, 3): of each cube at most as many as the median holds.
+
+    More where so few do not make up `count`. A sparse cube keeps what it has, so that strays do not
+    come to weigh more than they did.
+    """
+    order = rng.permutation(len(xyz))
+    # One number for the cube and for the place in the order: sorting such is the fastest way.
+    cube, place = np.divmod(
+        np.sort(cells(xyz, EVEN_M, len(xyz))[order] + np.arange(len(xyz))), len(xyz)
+    )
+    starts = np.flatnonzero(np.diff(cube, prepend=-1))
+    held = np.diff(starts, append=len(xyz))
+    rank = np.arange(len(xyz)) - np.repeat(starts, held)
+    most = max(float(np.median(held)), _level(held, count))
+    return np.sort(order[place[rank < most]])
+
+
+def _level(held: Ints, count: int) -> int:
+    """The least number a cube by which cubes that hold so many (N,) give `count` in all."""
+    ascending = np.sort(held)
+    filled = np.concatenate([[0], np.cumsum(ascending)[:-1]])
+    needed = (count - filled) / np.arange(len(held), 0, -1)
+    return int(np.ceil(needed[int(np.argmax(needed <= ascending))]))
 
 
 def _checked(xyz: ArrayLike) -> Floats:

@@ -168,7 +168,8 @@ def look_at(cloud: PointCloud, params: Parameters, rng: np.random.Generator) -> 
 
 def judged_graph(cloud: PointCloud, params: Parameters, rng: np.random.Generator) -> ScoredGraph:
     """All candidate edges of points drawn from a cloud, as our network sees them."""
-    superpoints = find_superpoints(cloud.sample(POINTS, rng), params.superpoints, rng)
+    drawn = cloud.sample(POINTS, rng, evenly=params.input.draw == "space")
+    superpoints = find_superpoints(drawn, params.superpoints, rng)
     candidates = find_candidates(superpoints)
     return score_edges(candidates, NetworkScorer.shipped("ours"))
 

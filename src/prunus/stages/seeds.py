@@ -40,7 +40,8 @@ def find_seeds(
         raise PrunusError(
             "no tips of leaders were found: no upright edge of confidence "
             f"{params.confidence.alpha_conf:g} in the upper {params.tips.alpha_tip:.0%} of the "
-            "cloud; expected a standing tree, Z up (see the frame) and in metres"
+            f"tree, {np.ptp(scored.xyz[:, 2]):.3g} m from its lowest to its highest superpoint; "
+            "expected an orchard tree of some metres, standing (see the frame and the unit)"
         )
     return SeededGraph(scored, root, tips), warnings
 

@@ -52,13 +52,19 @@ def find_superpoints(cloud: PointCloud, params: Cover, rng: np.random.Generator)
     if len(kept) == 0:
         raise PrunusError(
             f"no superpoint holds {params.min_points} points (the fullest holds "
-            f"{size.max(initial=0)} of {len(cloud)}); expected a denser cloud, in metres"
+            f"{size.max(initial=0)} of {len(cloud)} points over {_extent(cloud)}): too thin "
+            "to tell wood from strays; expected an orchard tree scanned more densely, or more of "
+            "its points (input.points), in metres (see the unit)"
         )
     start, members = within(cloud.xyz, kept, params.r_super)
     owner = nearest(axes.steps, kept, params.r_super)
     steps = np.bincount(owner[owner >= 0], minlength=len(kept))
     wood = np.asarray(PARKED * STEP * steps, np.float64)
     return Superpoints(cloud, kept, start, members, params.r_super, wood)
+
+
+def _extent(cloud: PointCloud) -> str:
+    return " x ".join(f"{size:.3g}" for size in np.ptp(cloud.xyz, axis=0)) + " m"
 
 
 @dataclass(frozen=True, eq=False)
