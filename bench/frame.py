@@ -51,9 +51,11 @@ def random_turn(seed: int) -> Floats:
 def told(name: str, found: list[tuple[float, float, bool]]) -> None:
     """Print what came out for some scans."""
     up, row, doubt = np.array(found, np.float64).T
-    print(f"{name:34} up within {LEVEL_DEG:.0f} degrees {(up <= LEVEL_DEG).mean():6.1%}, "
-          f"median {np.median(up):4.1f}, most {up.max():5.1f}; row within 6 {(row <= 6).mean():6.1%}, "
-          f"within 15 {(row <= 15).mean():6.1%}; undecided {doubt.mean():6.1%}")  # fmt: skip
+    print(
+        f"{name}: up within {LEVEL_DEG:.0f} degrees {(up <= LEVEL_DEG).mean():.1%}, "
+        f"median {np.median(up):.1f}, most {up.max():.1f}; row within 6 {(row <= 6).mean():.1%}, "
+        f"within 15 {(row <= 15).mean():.1%}; undecided {doubt.mean():.1%}"
+    )
 
 
 def floors(trees: list[Floats]) -> None:
@@ -80,8 +82,8 @@ def main() -> None:
     cleaned = [scan.xyz[scan.kind == Kind.TARGET] for scan in scans]
     told("hand-cleaned trees", [errors(xyz, np.eye(3)) for xyz in cleaned])
     told("rows as they stand", [errors(scan.xyz, np.eye(3)) for scan in scans])
-    told("rows turned at random",
-         [errors(scan.xyz, random_turn(seed)) for scan, seed in zip(scans, seeds, strict=True)])  # fmt: skip
+    pairs = zip(scans, seeds, strict=True)
+    told("rows turned at random", [errors(scan.xyz, random_turn(seed)) for scan, seed in pairs])
     rng = np.random.default_rng(chosen.seed)
     drawn = [scanned(rng, grow(rng), front=False) for grow in HABITS.values()]
     floors(cleaned[::10] + drawn)

@@ -20,14 +20,16 @@ LEVEL = 0.35
 """Wood is level when it rises less than so many metres a metre."""
 BESIDE = math.radians(12)
 """Wood runs along the row within so many radians, about; the ground plan does so, too."""
-ALIKE = 0.45
-"""So large a share of the level wood runs along the row, or it is not trusted."""
+ALIKE, EVIDENCE_M, NARROW = 0.40, 0.20, 0.85
+"""So large a share of the level wood runs along the row, or it is not trusted; nor if the square of
+that share, times the metres of its runs, is less; nor that share, times how often more the ground
+plan is drawn together along the row than on most lines."""
 LINE = 0.5
 """Pieces of wood that are a line by so much make up runs,"""
 JOINED_M = 0.12
 """in which they follow each other so near,"""
-RUN_M, LEAST_RUNS_M = 0.30, 0.90
-"""that count from so long on; all together a row has so much."""
+RUN_M = 0.30
+"""that count from so long on."""
 ONE_ASKEW_DEG, ROW_ASKEW_DEG = 15.0, 6.0
 """One tree, whose supports swerve, is turned when it is so far askew; a row when so far."""
 ROW_M = 2.5
@@ -48,18 +50,17 @@ def row_turn(cells: Cells, wood: Patches) -> float:
     `cells` and `wood` are in a house frame, without ground. 0 where there is no evidence of a row,
     or it is but a little askew. A row across X is turned the way that keeps to within 90 degrees.
     """
-    angle, metres = row_of_wood(cells, wood)
-    if metres < LEAST_RUNS_M:
-        angle, metres = row_of_trunks(cells)
-    askew = ROW_ASKEW_DEG if metres >= ROW_M else ONE_ASKEW_DEG
-    return -angle if metres > 0 and abs(math.degrees(angle)) >= askew else 0.0
-
-
-def row_of_wood(cells: Cells, wood: Patches) -> tuple[float, float]:
-    """The angle from X at which level wood runs, radians, and how many metres of it; 0 of none."""
     angle, share = row_angle(wood)
-    narrow = abs(float(_between(np.array(narrowest(cells)), angle))) <= BESIDE
-    return (angle, runs(wood, angle)) if share >= ALIKE and narrow else (0.0, 0.0)
+    metres = runs(wood, angle)
+    line, times = narrowest(cells)
+    if share >= ALIKE and share**2 * metres >= EVIDENCE_M:
+        evident = share * times >= NARROW
+    else:
+        angle, metres = row_of_trunks(cells)
+        evident = metres > 0
+    askew = ROW_ASKEW_DEG if metres >= ROW_M else ONE_ASKEW_DEG
+    evident = evident and abs(float(_between(np.array(line), angle))) <= BESIDE
+    return -angle if evident and abs(math.degrees(angle)) >= askew else 0.0
 
 
 def row_angle(wood: Patches) -> tuple[float, float]:
@@ -77,14 +78,17 @@ def row_angle(wood: Patches) -> tuple[float, float]:
     return float(_between(np.array(best), 0.0)), float(share)
 
 
-def narrowest(cells: Cells) -> float:
-    """The angle from X, radians, along which the ground plan is drawn together most."""
+def narrowest(cells: Cells) -> tuple[float, float]:
+    """The angle from X, radians, along which the ground plan is drawn together most.
+
+    And how often more so than on the median line.
+    """
     angles = np.radians(np.arange(0, 180, 3))
     aside = cells.xyz[:, :2] @ np.stack([-np.sin(angles), np.cos(angles)])
     slices = np.rint(aside / SLICE_M).astype(np.int64)
     slices -= slices.min()
     held = [(np.bincount(column).astype(np.float64) ** 2).sum() for column in slices.T]
-    return float(angles[int(np.argmax(held))])
+    return float(angles[int(np.argmax(held))]), float(np.max(held) / np.median(held))
 
 
 def runs(wood: Patches, angle: float) -> float:
