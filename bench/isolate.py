@@ -16,13 +16,12 @@ import numpy as np
 from prunus.evaluate.correction import corrected
 from prunus.evaluate.edits import edits
 from prunus.experiment.orchard import Tree, tree_of
-from prunus.model import Kind, PointCloud
+from prunus.model import FRAMES, Kind, PointCloud
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.result import Result
 from prunus.sensing.isolate import isolate, look_at
-from prunus.sensing.level import find_turn
-from prunus.sensing.orient import local_wood
+from prunus.sensing.stance import find_stance
 from prunus.simulate.scan import simulate_scan
 from prunus.workers import in_order
 
@@ -40,7 +39,8 @@ def measured(seed: int) -> Record:
     target, things = scan.kind == Kind.TARGET, np.isin(scan.kind, THINGS)
     clean = PointCloud.from_xyz(scan.xyz[target])
     alone = isolate(look_at(clean, Parameters(), np.random.default_rng(0)), None)
-    turn, _ = find_turn(scan.xyz, local_wood(scan.xyz), np.random.default_rng(0))
+    stance = find_stance(scan.xyz)
+    turn = stance.turn @ FRAMES[stance.frame]
     tree = tree_of(seed)
     base = tree.truth.xyz[0]
     record = {

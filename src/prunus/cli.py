@@ -52,11 +52,17 @@ TREES, LEARNING, SHIPPED = "Trees", "Learning and judging", "What is shipped"
 
 
 class Frame(StrEnum):
-    """Named input frames."""
+    """Named input frames (docs/frames.md)."""
 
     AUTO = "auto"
     Z_UP = "z-up"
+    Z_UP_X_ROW = "z-up-x-row"
     OPTICAL = "optical"
+    CAMERA_LINK = "camera-link"
+    Y_UP = "y-up"
+    Z_DOWN = "z-down"
+    X_UP = "x-up"
+    X_DOWN = "x-down"
 
 
 class Unit(StrEnum):

@@ -6,15 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from prunus.errors import PrunusError
 from prunus.io.clouds import FileCloud
 from prunus.io.clouds import read_cloud as read_file
 from prunus.io.safely import path_of
 from prunus.model import FRAMES, PointCloud
-from prunus.sensing.level import find_turn
-from prunus.sensing.orient import find_frame, local_wood
+from prunus.sensing.stance import find_stance
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +30,10 @@ class Scan:
 
 
 def open_scan(path: str | Path, frame: str = "auto", unit: str | None = None) -> Scan:
-    """Read a file. frame: z-up, optical, or auto = by the evidence in the cloud; unit: m, cm, mm.
+    """Read a file. frame: one of `FRAMES`, or auto = by the evidence in the cloud; unit: m, cm, mm.
+
+    With `auto` a scan is levelled by its ground. The row is turned to X, where there is evidence of
+    one and the frame does not tell it (`ROW_TOLD`). Notes say what was done.
 
     Raises PrunusError naming the file, what was found and what was expected.
     """
@@ -42,20 +42,9 @@ def open_scan(path: str | Path, frame: str = "auto", unit: str | None = None) ->
     if not isinstance(unit, str | None):
         raise PrunusError(f"unknown unit {unit!r}; expected text")
     file = read_file(path_of(path), unit)
-    notes = list(file.notes)
-    wood = local_wood(file.xyz)
-    seems, why = find_frame(wood)
-    turn = None
-    if frame == "auto":
-        frame = seems
-        notes.append(f"frame {frame}: {why}")
-        to_house = FRAMES[frame]
-        in_house = file.xyz @ to_house.T
-        turn, turned = find_turn(in_house, wood.turned(to_house), np.random.default_rng(0))
-        notes += turned
-    elif seems != frame and not why.startswith("undecided"):
-        notes.append(f"frame {frame} as asked, but the cloud looks like {seems}: {why}")
-    return Scan(PointCloud.from_xyz(file.xyz, frame, file.rgb, turn), file, frame, notes)
+    stance = find_stance(file.xyz, frame)
+    cloud = PointCloud.from_xyz(file.xyz, stance.frame, file.rgb, stance.turn)
+    return Scan(cloud, file, stance.frame, [*file.notes, *stance.notes])
 
 
 def read_cloud(path: str | Path, frame: str = "auto", unit: str | None = None) -> PointCloud:

@@ -26,7 +26,7 @@ from prunus.search import (
 )
 from prunus.sensing.diagnosis import explaining
 from prunus.sensing.isolate import Isolated, Scene, isolate, judged_graph
-from prunus.sensing.trunks import find_foot
+from prunus.sensing.trunks import FOOT_REACH_M, find_foot, on_wood
 from prunus.stages.candidates import find_candidates
 from prunus.stages.confidence import EdgeScorer, check_scorer, hopeful, score_edges
 from prunus.stages.networks import NetworkScorer
@@ -85,6 +85,7 @@ def follow(
         doubts += isolated.doubts()
     with timed(seconds, "seeds"):
         foot = None if at is not None else isolated.foot if isolated else find_foot(cloud, scored)
+        foot = on_wood(foot, scored)
         hoped = hopeful(scored, scorer, params.confidence)
         at, told = out_of_weeds(hoped, at)
         notes += told
@@ -172,13 +173,9 @@ LEAST_LEFT = 0.02
 
 def _standing_at(foot: Floats, skeleton: Skeleton) -> Skeleton:
     """The skeleton with its base at the foot of its trunk, where that is beside its lowest node."""
-    if np.linalg.norm(skeleton.xyz[0] - foot) > FOOT_REACH:
+    if np.linalg.norm(skeleton.xyz[0] - foot) > FOOT_REACH_M:
         return skeleton
     return replace(skeleton, xyz=np.concatenate([foot[None], skeleton.xyz[1:]]))
-
-
-FOOT_REACH = 0.15
-"""The foot of a trunk is so near to its lowest superpoint, metres."""
 
 
 def best_skeleton(

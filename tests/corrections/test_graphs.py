@@ -19,6 +19,7 @@ from prunus.model import PointCloud, Skeleton, Superpoints
 from prunus.params import Cover, Parameters
 from prunus.pipeline import skeletonize
 from prunus.result import Result
+from prunus.sensing.stance import Stance
 from tests.conftest import field_scan
 from tests.corrections.conftest import QUICK
 from tests.corrections.test_work import acted, half_of_the_scan, same_state, some_leader
@@ -157,7 +158,7 @@ def test_a_scan_that_is_turned_otherwise_now_stands_as_it_did(
     tilt = np.array(
         [[1, 0, 0], [0, np.cos(angle), -np.sin(angle)], [0, np.sin(angle), np.cos(angle)]]
     )
-    monkeypatch.setattr(intake, "find_turn", lambda *_: (tilt, []))
+    monkeypatch.setattr(intake, "find_stance", lambda *_: Stance("z-up", tilt, []))
     with Work.open(scan_file, folder) as again:
         assert same_state(again.state, work.state)
         assert same(again.scan.cloud, work.scan.cloud)

@@ -12,6 +12,7 @@ from prunus.io.gltf import write_gltf
 from prunus.io.meshes import SIDES, frames_along, tube_around, tubes
 from prunus.io.obj import write_obj
 from prunus.model import FRAMES, Label, RigidMotion, Skeleton
+from prunus.sensing.orient import UPWARD
 from tests.drawn import tree
 
 THICK = 0.01
@@ -84,7 +85,7 @@ def test_nodes_in_one_place_make_no_ring_and_a_branch_without_length_no_tube() -
 
 
 @pytest.mark.parametrize("ending", [".glb", ".gltf"])
-@pytest.mark.parametrize("frame", sorted(FRAMES))
+@pytest.mark.parametrize("frame", UPWARD.values())
 def test_gltf_opens_upright_with_a_mesh_a_branch(tmp_path: Path, ending: str, frame: str) -> None:
     far = np.array([4e5, 5e6, 100.0])
     skeleton = thick()

@@ -66,5 +66,5 @@ def test_bad_points_are_refused(xyz: object, message: str) -> None:
 
 
 def test_an_unknown_frame_is_refused() -> None:
-    with pytest.raises(PrunusError, match="unknown frame 'y-up'; expected one of"):
-        PointCloud.from_xyz(np.zeros((1, 3)), "y-up")
+    with pytest.raises(PrunusError, match="unknown frame 'y-under'; expected one of"):
+        PointCloud.from_xyz(np.zeros((1, 3)), "y-under")

@@ -1,68 +1,40 @@
-"""Which way is up and where the row runs, on drawn scenes and simulated rows."""
-
-import math
+"""Levelled by the ground, as far as that tells."""
 
 import numpy as np
 import pytest
 
 from prunus.model import Floats
-from prunus.model.rotations import upright
-from prunus.sensing.level import ASKEW, find_turn, ground_normal, row_angle
-from prunus.sensing.orient import local_wood
-from prunus.simulate.scan import simulate_scan
+from prunus.model.rotations import turned, upright
+from prunus.sensing.ground import Ground
+from prunus.sensing.level import levelling
 
 
-def about_x(degrees: float) -> Floats:
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    return np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+def strip(tilt: Floats, length: float = 3.0, width: float = 0.4) -> Ground:
+    """A strip of ground along X, turned by a vector in degrees."""
+    turn = turned(np.radians(tilt))
+    return Ground(turn[:, 2], np.zeros(3), np.ones(1, np.bool_), turn[:, 0], length, width)
 
 
-def about_z(degrees: float) -> Floats:
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+@pytest.mark.parametrize("tilt", [[0.0, 14, 0], [-20.0, 0, 0], [12.0, -9, 0], [0.0, -3.5, 0]])
+def test_tilted_ground_is_levelled(tilt: list[float]) -> None:
+    ground = strip(np.array(tilt))
+    turn, degrees = levelling(ground)
+    assert turn @ ground.up == pytest.approx([0, 0, 1])
+    assert degrees == pytest.approx(np.linalg.norm(tilt), abs=0.5)
 
 
-def field(rng: np.random.Generator) -> Floats:
-    """A broad strip of ground, and stakes on a row behind it joined by rails."""
-    ground = np.column_stack([rng.uniform(-1.5, 1.5, 8000), rng.uniform(-1.5, -0.3, 8000),
-                              rng.normal(0, 0.01, 8000)])  # fmt: skip
-    rails = np.column_stack([rng.uniform(-1.5, 1.5, 4000), rng.normal(0.3, 0.01, 4000),
-                             rng.choice([0.5, 1.0], 4000) + rng.normal(0, 0.01, 4000)])  # fmt: skip
-    return np.concatenate([ground, rails])
-
-
-@pytest.mark.parametrize("tilt", [-12.0, 10.0])
-def test_a_tilted_scan_is_levelled_by_its_ground(tilt: float, rng: np.random.Generator) -> None:
-    xyz = field(rng) @ about_x(tilt).T
-    turn, notes = find_turn(xyz, local_wood(xyz), rng)
-    up = turn @ about_x(tilt) @ [0, 0, 1]
-    assert math.degrees(math.acos(min(1.0, up[2]))) < 2
-    assert notes and notes[0].startswith("levelled by")
-
-
-@pytest.mark.parametrize("askew", [-30.0, 20.0])
-def test_a_scan_askew_is_turned_to_its_row(askew: float, rng: np.random.Generator) -> None:
-    xyz = field(rng) @ about_z(askew).T
-    turn, notes = find_turn(xyz, local_wood(xyz), rng)
-    along = turn @ about_z(askew) @ [1, 0, 0]
-    assert abs(math.degrees(math.atan2(along[1], along[0]))) < 5
-    assert any("to the row" in note for note in notes)
-
-
-@pytest.mark.parametrize("seed", range(500_000, 500_004))
-def test_a_level_row_stays_as_it_is(seed: int, rng: np.random.Generator) -> None:
-    xyz = simulate_scan(seed).xyz
-    turn, notes = find_turn(xyz, local_wood(xyz), rng)
+@pytest.mark.parametrize("tilt", [[0.0, 2, 0], [7.0, 0, 0], [0.0, 0, 30]])
+def test_what_cannot_be_told_is_left_alone(tilt: list[float]) -> None:
+    turn, degrees = levelling(strip(np.array(tilt)))
     assert np.array_equal(turn, np.eye(3))
-    assert notes == []
+    assert degrees == 0
 
 
-def test_no_ground_and_no_wood_say_nothing(rng: np.random.Generator) -> None:
-    ball = rng.normal(0, 0.3, (3000, 3))
-    assert ground_normal(ball, rng) is None
-    assert ground_normal(np.zeros((1, 3)), rng) is None
-    angle, share = row_angle(local_wood(ball))
-    assert share < 0.6 or abs(angle) < math.radians(ASKEW)
+def test_across_a_narrow_strip_nothing_is_followed_that_is_followed_along_it() -> None:
+    ground = strip(np.array([7.0, 10, 0]))
+    turn, degrees = levelling(ground)
+    assert degrees == pytest.approx(10, abs=0.2)
+    assert (turn @ ground.along)[2] == pytest.approx(0, abs=0.03)
 
 
 def test_upright_is_the_least_rotation() -> None:
@@ -71,4 +43,4 @@ def test_upright_is_the_least_rotation() -> None:
     turn = upright(up)
     assert turn @ up == pytest.approx([0, 0, 1])
     assert turn @ turn.T == pytest.approx(np.eye(3))
-    assert math.acos((np.trace(turn) - 1) / 2) == pytest.approx(math.acos(up[2]))
+    assert np.arccos((np.trace(turn) - 1) / 2) == pytest.approx(np.arccos(up[2]))

@@ -110,7 +110,8 @@ def _object(path: Path, number: int, text: bytes) -> dict[str, Any]:
 def _head(path: Path, text: bytes) -> Head:
     head = record_of(Head, _object(path, 1, text), f"{path}:1", "head")
     if head.frame not in (*FRAMES, "auto"):
-        raise PrunusError(f"{path}:1: unknown frame {head.frame!r}; expected auto, z-up, optical")
+        known = ", ".join(FRAMES)
+        raise PrunusError(f"{path}:1: unknown frame {head.frame!r}; expected auto, {known}")
     Parameters.parse(head.params, f"{path}:1")
     return head
 

@@ -5,7 +5,7 @@ K candidates (the population).
 """
 
 from prunus.model.arrays import Bools, Floats, Ints
-from prunus.model.cloud import FRAMES, PointCloud, RigidMotion
+from prunus.model.cloud import FRAMES, ROW_TOLD, PointCloud, RigidMotion
 from prunus.model.graph import CandidateGraph, ScoredGraph, SeededGraph, Superpoints
 from prunus.model.kind import Kind
 from prunus.model.rig import Camera, CloudView, DepthView, RigView
@@ -13,6 +13,7 @@ from prunus.model.skeleton import Label, Lines, Skeleton, parents_first
 
 __all__ = [
     "FRAMES",
+    "ROW_TOLD",
     "Bools",
     "Camera",
     "CandidateGraph",

@@ -12,12 +12,24 @@ from prunus.model.arrays import Bools, Bytes, Floats, Ints, cubes, frozen, snapp
 
 FRAMES: dict[str, Floats] = {
     "z-up": np.eye(3),
+    "z-up-x-row": np.eye(3),
     "optical": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
+    "camera-link": np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
+    "y-up": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
+    "z-down": np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]),
+    "x-up": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]),
+    "x-down": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [-1.0, 0.0, 0.0]]),
 }
 """Named input frames -> rotation (3, 3) into the house frame: X along the row, Y depth, Z up.
 
-`optical` is a camera's frame: x right, y down, z forward.
+`optical` is a camera's frame: x right, y down, z forward. `camera-link` is ROS's body frame: x
+forward, y left, z up. `y-up` is that of graphics: x right, y up, z toward the viewer. The most
+usual frame of each upward axis comes first. docs/frames.md has them all.
 """
+
+ROW_TOLD = frozenset({"z-up-x-row", "optical", "camera-link"})
+"""Frames that say where the row runs: along X, or across the line of sight. In the others only the
+upward axis is known."""
 
 
 CUBE_M, DENSEST, CHANCE = 0.02, 5.0, 12
@@ -82,7 +94,9 @@ class PointCloud:
     ) -> PointCloud:
         """A cloud from points (P, 3), metres, in a named frame (see `FRAMES`).
 
-        `turn` (3, 3) is a further rotation, from there to the house frame.
+        Axes are turned as the name says and no further: nothing is levelled, and no row is looked
+        for, as `prunus.read_cloud` does. `turn` (3, 3) is a further rotation, from there to the
+        house frame; `prunus.sensing.stance.find_stance` finds one.
 
         The points are turned into the house frame and shifted to a local origin in double
         precision, so that large coordinates (UTM) keep their millimetres.
@@ -93,7 +107,7 @@ class PointCloud:
         if len(points) == 0:
             raise PrunusError("the cloud holds no points; expected at least one")
         if not isinstance(frame, str) or frame not in FRAMES:
-            raise PrunusError(f"unknown frame {frame!r}; expected one of {sorted(FRAMES)}")
+            raise PrunusError(f"unknown frame {frame!r}; expected one of {', '.join(FRAMES)}")
         rotation = FRAMES[frame] if turn is None else _rotation(turn) @ FRAMES[frame]
         turned = points @ rotation.T
         middle = (turned.min(axis=0) + turned.max(axis=0)) / 2

@@ -10,7 +10,9 @@ import numpy as np
 from prunus.errors import NoTreeError
 from prunus.kernels.neighbours import within
 from prunus.model import FRAMES, Floats, PointCloud
-from prunus.sensing.orient import find_frame, local_wood
+from prunus.sensing.orient import local_wood
+from prunus.sensing.patches import Cells
+from prunus.sensing.stance import seems
 
 LOOKED_AT = 20_000
 """Of so many points."""
@@ -92,14 +94,14 @@ def _large(cloud: PointCloud, xyz: Floats) -> str:
 
 def _lying(cloud: PointCloud, xyz: Floats) -> str:
     """In the frame of the file, whose name is what can be said otherwise."""
-    seems, why = find_frame(local_wood(cloud.to_input.apply(xyz)))
-    if cloud.to_input.rotation[:, 2] @ FRAMES[seems][2] > UPRIGHT:
+    up = seems(cloud.to_input.apply(xyz))
+    if cloud.to_input.rotation[:, 2] @ FRAMES[up.frame][2] > UPRIGHT:
         return ""
-    return f"it seems to lie on its side, as {why}: try --frame {seems}"
+    return f"it seems to lie on its side, as {up.why}: try --frame {up.frame}"
 
 
 def _no_branches(cloud: PointCloud, xyz: Floats) -> str:
-    if local_wood(xyz).linear.mean() > LINEAR:
+    if local_wood(Cells.of(xyz)).linear.mean() > LINEAR:
         return ""
     return f"hardly anything in it is like a branch: {TRY}"
 

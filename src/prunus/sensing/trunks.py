@@ -84,6 +84,22 @@ def find_foot(cloud: PointCloud, scored: ScoredGraph) -> Floats | None:
     return foot_of(cloud.xyz, trunks[0].base) if trunks else None
 
 
+def on_wood(foot: Floats | None, scored: ScoredGraph) -> Floats | None:
+    """A foot (3,) that was found, if sure wood is there; else the nearest superpoint of such.
+
+    None where there is none, or no foot was found.
+    """
+    wood = np.unique(scored.edges[scored.confidence >= SURE])
+    if foot is None or len(wood) == 0:
+        return None
+    away = np.linalg.norm(scored.xyz[wood] - foot, axis=1)
+    return foot if away.min() <= FOOT_REACH_M else np.asarray(scored.xyz[wood[away.argmin()]])
+
+
+FOOT_REACH_M = 0.15
+"""The foot of a trunk is so near to a superpoint of its wood."""
+
+
 def foot_of(points: Floats, base: Floats) -> Floats:
     """The lowest point (3,) of a trunk's axis, from the points (P, 3) of its tree alone.
 
