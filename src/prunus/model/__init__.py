@@ -9,6 +9,7 @@ from prunus.model.cloud import FRAMES, ROW_TOLD, PointCloud, RigidMotion
 from prunus.model.graph import CandidateGraph, ScoredGraph, SeededGraph, Superpoints
 from prunus.model.kind import Kind
 from prunus.model.rig import Camera, CloudView, DepthView, RigView
+from prunus.model.role import Role
 from prunus.model.skeleton import Label, Lines, Skeleton, parents_first
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "PointCloud",
     "RigView",
     "RigidMotion",
+    "Role",
     "ScoredGraph",
     "SeededGraph",
     "Skeleton",

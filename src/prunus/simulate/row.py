@@ -68,7 +68,7 @@ def plant_row(rng: np.random.Generator, settings: RowSettings) -> Row:
         room = spacing * rng.uniform(*settings.room) if spacing else math.inf
         grown = grow_tree(rng, lean=angle, sides=like, room=room)
         tree = grown.moved(RigidMotion(np.eye(3), at))
-        parts.append(_wood(tree, kind, len(trees)))
+        parts.append(wood_of(tree, kind, len(trees)))
         trees.append(tree)
     for angle, depth in ((lean, 0.0), (-lean, float(np.mean(settings.behind_depth)))):
         parts += _trellis(rng, settings, trees, angle, depth)
@@ -98,7 +98,8 @@ def _shifted(rng: np.random.Generator, settings: RowSettings, along: float, dept
     return np.array([along + away[0], depth + away[1], 0.0])
 
 
-def _wood(tree: Skeleton, kind: Kind, number: int) -> Pieces:
+def wood_of(tree: Skeleton, kind: Kind, number: int) -> Pieces:
+    """The pieces of a tree: one an edge."""
     rows = np.arange(1, len(tree))
     size = len(rows)
     return Pieces(

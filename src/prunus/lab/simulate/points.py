@@ -1,0 +1,93 @@
+"""The truth of every point of a simulated scan: role, branch, axis, radius, direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from prunus.measure import branch_of_rows, branches
+from prunus.model import Floats, Ints, Label, Role, Skeleton
+from prunus.simulate.scan import Scan
+from prunus.simulate.wood import unit
+
+UNKNOWN_ROLE = -1  # wood of a tree of which no role is known
+SPUR_M = 0.06  # shorter branches are spurs
+
+ROLE_OF_LABEL = np.array([Role.STEM, Role.FRAMEWORK, Role.FRUITING_UNIT, Role.LATERAL])
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PointTruth:
+    """Of each of P points: role (P,), `UNKNOWN_ROLE` where only its being wood is known; branch
+    (P,), counted over all trees, -1 = none; the nearest point of its branch's axis (P, 3), the
+    radius there (P,), metres, and the unit direction of that axis towards the foot (P, 3), which
+    are the point itself and zero where there is no wood.
+    """
+
+    role: Ints
+    branch: Ints
+    axis: Floats
+    radius: Floats
+    toward_foot: Floats
+
+
+def point_truth(scan: Scan) -> PointTruth:
+    """The truth of the points of a scan, wood of neighbours included."""
+    count = len(scan.xyz)
+    role, branch = np.full(count, int(Role.NO_WOOD)), np.full(count, -1)
+    axis, radius, direction = scan.xyz.copy(), np.zeros(count), np.zeros((count, 3))
+    numbered = 0
+    for number, tree in enumerate(scan.row.trees):
+        own = np.flatnonzero(scan.tree == number)
+        row = scan.node[own]
+        roles, owner = roles_of(tree)
+        role[own], branch[own] = roles[row], owner[row] + numbered
+        axis[own] = _on_axis(tree, row, scan.xyz[own])
+        radius[own] = tree.radius[row]
+        direction[own] = -unit(tree.edge_vectors[row])
+        numbered += owner.max(initial=-1) + 1
+    return PointTruth(role=role, branch=branch, axis=axis, radius=radius, toward_foot=direction)
+
+
+def roles_of(tree: Skeleton) -> tuple[Ints, Ints]:
+    """The role (M,) and the branch (M,) of the edge that ends in each row.
+
+    Side branches shorter than 6 cm, and those on trunk and supports, are spurs or shoots. Of trees
+    without leaders the stem alone, and the spurs, have a role.
+    """
+    found = branches(tree)
+    owner = branch_of_rows(found, len(tree))
+    role = ROLE_OF_LABEL[tree.label].astype(np.int64)
+    ufo = bool((tree.label == Label.LEADER).any())
+    for number, one in enumerate(found):
+        if one.label != Label.SIDE_BRANCH:
+            continue
+        carrier = tree.label[one.rows[0]] if one.rows[0] > 0 else Label.TRUNK
+        shoot = ufo and carrier in (Label.TRUNK, Label.SUPPORT)
+        if shoot or one.length < SPUR_M:
+            role[owner == number] = Role.SPUR_OR_SHOOT
+        elif not ufo:
+            role[owner == number] = UNKNOWN_ROLE
+    return role, owner
+
+
+def _on_axis(tree: Skeleton, row: Ints, xyz: Floats) -> Floats:
+    """The nearest points (P, 3) on the edges that end in rows (P,), and on those next to them.
+
+    Noise moves a point along its branch too, past the end of the edge that it was drawn from; so
+    the edge below and one above are looked at as well.
+    """
+    above = np.arange(len(tree))
+    above[tree.parent[1:][::-1]] = np.arange(1, len(tree))[::-1]
+    same = tree.label[above] == tree.label
+    best, nearest = np.full(len(xyz), np.inf), np.zeros_like(xyz)
+    for edge in (row, np.maximum(tree.parent[row], 1), np.where(same[row], above[row], row)):
+        start, end = tree.xyz[tree.parent[edge]], tree.xyz[edge]
+        vector = end - start
+        share = ((xyz - start) * vector).sum(axis=1) / np.maximum((vector**2).sum(axis=1), 1e-12)
+        place = start + np.clip(share, 0, 1)[:, None] * vector
+        distance = ((xyz - place) ** 2).sum(axis=1)
+        closer = distance < best
+        nearest[closer], best[closer] = place[closer], distance[closer]
+    return nearest
