@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -40,7 +42,7 @@ def test_neighbours_are_those_that_a_dictionary_finds(cloud):
 def test_children_and_parents_agree(cloud):
     levels = voxels_of(cloud).levels
     assert len(levels) == LEVELS
-    for fine, coarse in zip(levels[:-1], levels[1:], strict=True):
+    for fine, coarse in pairwise(levels):
         assert (coarse.cells[fine.parent] == fine.cells >> 1).all()
         for row, children in enumerate(fine.children):
             held = np.flatnonzero(fine.parent == row)

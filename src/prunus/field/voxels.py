@@ -37,8 +37,10 @@ class Level:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Voxels:
-    """The occupied voxels of a cloud: xyz (V, 3), the mean of the points of each; count (V,); and
-    the voxel (P,) of each point.
+    """The occupied voxels of a cloud, as `cells` (V, 3).
+
+    xyz (V, 3): the mean of the points of each; count (V,): how many; spread (V, 6): their
+    covariance, in voxels; of_point (P,): the voxel of each point.
     """
 
     cells: Ints

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from prunus.field.voxels import Voxels, voxels_of
 from prunus.io.arrays import read_arrays, write_arrays
@@ -53,7 +55,7 @@ class FieldExample:
     def write(self, path: Path) -> None:
         """Keep it, in single precision."""
         truth = self.truth
-        arrays = {
+        arrays: dict[str, NDArray[Any]] = {
             "xyz": self.xyz.astype(np.float32),
             "offset": (truth.axis - self.xyz).astype(np.float16),
             "radius": truth.radius.astype(np.float16),
@@ -110,8 +112,9 @@ def _motion(rng: np.random.Generator) -> Floats:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Lesson:
-    """Voxels with features (V, F) and what is true of each: of the branch that most of its points
-    are of, role (V,), offset to the axis (V, 3), radius (V,), metres, and direction (V, 3).
+    """Voxels with features (V, F), and what is true of the branch that most points of each are of.
+
+    role (V,), offset to the axis (V, 3), radius (V,), metres, and direction to the foot (V, 3).
     """
 
     voxels: Voxels

@@ -55,7 +55,8 @@ class GatherProduct(torch.autograd.Function):
     def forward(ctx: Any, x: Tensor, weight: Tensor, neighbours: Tensor) -> Tensor:
         """The product (V, D)."""
         ctx.save_for_backward(x, weight, neighbours)
-        return padded(x)[neighbours].flatten(1) @ weight
+        product: Tensor = padded(x)[neighbours].flatten(1) @ weight
+        return product
 
     @staticmethod
     def backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, Tensor, None]:

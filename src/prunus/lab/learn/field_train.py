@@ -60,7 +60,7 @@ def losses_of(outputs: Tensor, batch: Batch) -> dict[str, Tensor]:
 
     Where wood is of no known role, being taken for wood at all is what counts.
     """
-    logits, offset, log_radius, direction = outputs.split(list(OUTPUTS.values()), dim=1)
+    logits, offset, log_radius, direction = torch.split(outputs, list(OUTPUTS.values()), dim=1)
     known, wood = batch.role != UNKNOWN_ROLE, batch.role != Role.NO_WOOD
     weight = torch.tensor(CLASS_WEIGHT)
     told = nn.functional.cross_entropy(logits[known], batch.role[known], weight, reduction="sum")
@@ -134,7 +134,7 @@ def _step(
     nn.utils.clip_grad_norm_(net.parameters(), 1.0)
     if torch.isfinite(loss):
         optimizer.step()
-    return {name: float(value) for name, value in losses.items()}
+    return {name: float(value.detach()) for name, value in losses.items()}
 
 
 def rate_at(step: int, steps: int) -> float:

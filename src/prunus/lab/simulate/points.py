@@ -19,10 +19,12 @@ ROLE_OF_LABEL = np.array([Role.STEM, Role.FRAMEWORK, Role.FRUITING_UNIT, Role.LA
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PointTruth:
-    """Of each of P points: role (P,), `UNKNOWN_ROLE` where only its being wood is known; branch
-    (P,), counted over all trees, -1 = none; the nearest point of its branch's axis (P, 3), the
-    radius there (P,), metres, and the unit direction of that axis towards the foot (P, 3), which
-    are the point itself and zero where there is no wood.
+    """What is true of each of P points.
+
+    role (P,), `UNKNOWN_ROLE` where only its being wood is known; branch (P,), counted over all
+    trees, -1 = none; axis (P, 3), the nearest point of the axis of its branch; radius (P,) there,
+    metres; toward_foot (P, 3), the unit direction of that axis. Where there is no wood the axis
+    is the point itself, and the others are zero.
     """
 
     role: Ints
