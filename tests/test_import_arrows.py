@@ -8,7 +8,7 @@ import prunus
 HOME = Path(prunus.__file__).parent
 FLOORS = [
     {"cli"},
-    {"studio"},
+    {"studio", "lab"},
     {
         "progress",
         "demo",
@@ -25,7 +25,7 @@ FLOORS = [
     {"pipeline", "graphs", "intake"},
     {"plausible"},
     {"result"},
-    {"sensing", "search", "stages", "measure", "io"},
+    {"sensing", "search", "stages", "measure", "io", "field"},
     {"rules", "grammar", "params", "kernels"},
     {"model", "reading"},
     {"workers"},

@@ -97,7 +97,8 @@ class Residual(nn.Module):
     def forward(self, x: Tensor, neighbours: Tensor) -> Tensor:
         """(V, width) to (V, width)."""
         inner = torch.relu(self.first_norm(self.first(x, neighbours)))
-        return x + self.second_norm(self.second(inner, neighbours))
+        outer: Tensor = x + self.second_norm(self.second(inner, neighbours))
+        return outer
 
 
 class FieldNet(nn.Module):

@@ -1,0 +1,137 @@
+"""Votes for the axes of branches: what was a fat or one-sided surface becomes thin threads.
+
+Each voxel of wood moves by the offset that the network predicts (medial-axis voting, as VoteNet
+votes for centres). One step of mean shift draws the votes together, and a maximal independent set
+of them, the densest first, stands for the rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.spatial import cKDTree
+
+from prunus.model import Bools, Floats, Ints, Role
+
+LEAST_WOOD = 0.5  # probability of wood from which a voxel votes
+SHIFT_M = 0.02  # bandwidth of the mean shift
+LONELY_M, LEAST_VOTES = 0.03, 3.0  # fewer votes (weights) around one are noise
+APART_M = 0.012  # distance of the nodes that stand for the votes
+LEAST_CHANCE = 1e-3  # probabilities below are taken for it when their logarithms are averaged
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PointField:
+    """What is said of each of V voxels.
+
+    xyz (V, 3), metres; count (V,) of points; role (V, 6), probabilities in the order of `Role`;
+    offset (V, 3) to the axis of its branch, metres; radius (V,) of that, metres; toward_foot
+    (V, 3), the unit direction of that axis to the foot of the tree.
+    """
+
+    xyz: Floats
+    count: Ints
+    role: Floats
+    offset: Floats
+    radius: Floats
+    toward_foot: Floats
+
+    def take(self, rows: Ints | Bools) -> PointField:
+        """The field of these voxels only."""
+        return PointField(
+            xyz=self.xyz[rows],
+            count=self.count[rows],
+            role=self.role[rows],
+            offset=self.offset[rows],
+            radius=self.radius[rows],
+            toward_foot=self.toward_foot[rows],
+        )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Threads:
+    """N nodes on the axes of branches, about 12 mm apart.
+
+    xyz (N, 3); role (N, 6), probabilities; radius (N,), metres; toward_foot (N, 3), unit; votes
+    (N,), the root of the points of each voxel, summed; scatter (N,), how far its votes lie from
+    it, metres.
+    """
+
+    xyz: Floats
+    role: Floats
+    radius: Floats
+    toward_foot: Floats
+    votes: Floats
+    scatter: Floats
+
+    def __len__(self) -> int:
+        return len(self.xyz)
+
+
+def gather_votes(field: PointField) -> Threads:
+    """The threads of a field; empty where nothing is wood."""
+    field = field.take(1 - field.role[:, Role.NO_WOOD] >= LEAST_WOOD)
+    weight = np.sqrt(field.count)
+    voted = _mean_shift(field.xyz + field.offset, weight)
+    density = _around(voted, LONELY_M) @ weight
+    kept = density >= LEAST_VOTES
+    field, voted, weight, density = field.take(kept), voted[kept], weight[kept], density[kept]
+    node = _node_of(voted, density)
+    total = np.bincount(node, weight)
+
+    def mean(values: Floats) -> Floats:
+        sums = [np.bincount(node, weight * column) for column in values.T]
+        return np.asarray(np.column_stack(sums) / total[:, None])
+
+    xyz = mean(voted)
+    role = np.exp(mean(np.log(np.maximum(field.role, LEAST_CHANCE))))
+    direction = mean(field.toward_foot)
+    scatter = mean(((voted - xyz[node]) ** 2).sum(axis=1, keepdims=True))[:, 0]
+    return Threads(
+        xyz=xyz,
+        role=role / role.sum(axis=1, keepdims=True),
+        radius=mean(field.radius[:, None])[:, 0],
+        toward_foot=direction / np.maximum(np.linalg.norm(direction, axis=1), 1e-9)[:, None],
+        votes=np.asarray(total, np.float64),
+        scatter=np.sqrt(scatter),
+    )
+
+
+def _around(xyz: Floats, reach: float) -> csr_array:
+    """Which points (N, N) lie within `reach` of which, each of itself too."""
+    pairs = cKDTree(xyz).query_pairs(reach, output_type="ndarray") if len(xyz) else np.zeros((0, 2))
+    own = np.arange(len(xyz))
+    rows = np.concatenate([pairs[:, 0], pairs[:, 1], own]).astype(np.int64)
+    columns = np.concatenate([pairs[:, 1], pairs[:, 0], own]).astype(np.int64)
+    return csr_array((np.ones(len(rows)), (rows, columns)), shape=(len(xyz), len(xyz)))
+
+
+def _mean_shift(xyz: Floats, weight: Floats) -> Floats:
+    """One step: each point to the mean of those within the bandwidth."""
+    near = _around(xyz, SHIFT_M)
+    return np.asarray((near @ (weight[:, None] * xyz)) / (near @ weight)[:, None])
+
+
+def _node_of(xyz: Floats, density: Floats) -> Ints:
+    """The node (V,) that each vote belongs to: a maximal independent set, the densest first.
+
+    In each round every vote that is the densest of those still free around it becomes a node, and
+    takes those with it (Luby's algorithm with density for chance).
+    """
+    near = _around(xyz, APART_M)
+    rank = np.empty(len(xyz))
+    rank[np.lexsort((*xyz.T, density))] = np.arange(1, len(xyz) + 1)
+    owner, free = np.zeros(len(xyz), np.int64), rank.copy()
+    while free.any():
+        densest = near.multiply(free[None, :]).tocsr().max(axis=1).toarray().ravel()
+        chosen = (free > 0) & (densest == free)
+        # A free vote belongs to the densest of the new nodes around it.
+        best = near.multiply(np.where(chosen, free, 0.0)[None, :]).tocsr().max(axis=1)
+        best = best.toarray().ravel()
+        taken = (free > 0) & (best > 0)
+        owner[taken] = best[taken]
+        free[taken] = 0
+    _, node = np.unique(owner, return_inverse=True)
+    return np.asarray(node.ravel())
