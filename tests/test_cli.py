@@ -232,7 +232,7 @@ def test_a_bag_is_an_input_like_any_other(
         (["tree.ply", "--params", "none.toml"], 2, "none.toml: cannot be read"),
         (["tree.ply", "--points", "few"], 2, "--points: 'few'; expected a number or 'all'"),
         (["tree.ply", "--points", "0"], 2, "input.points"),
-        (["tree.ply", "--frame", "y-up"], 2, "Invalid value for '--frame'"),
+        (["tree.ply", "--frame", "sideways"], 2, "Invalid value for '--frame'"),
         (["tree.ply", "--seed", "-1"], 2, "Invalid value for '--seed'"),
         (["tree.ply", "--nonsense"], 2, "No such option"),
         (["hollow"], 1, "no point cloud in this folder"),

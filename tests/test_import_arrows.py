@@ -25,8 +25,8 @@ FLOORS = [
     {"pipeline", "graphs", "intake"},
     {"plausible"},
     {"result"},
-    {"sensing", "search", "stages", "measure", "io", "field"},
-    {"rules", "grammar", "params", "kernels"},
+    {"sensing", "search", "stages", "measure", "io", "field", "growth"},
+    {"rules", "grammar", "params", "kernels", "networks"},
     {"model", "reading"},
     {"workers"},
     {"errors"},
@@ -40,6 +40,7 @@ SAME_FLOOR = {
     ("rules", "grammar"),
     ("stages", "measure"),
     ("sensing", "stages"),
+    ("growth", "field"),
 }
 """Neighbours on one floor that may be used. No side room knows another."""
 

@@ -116,7 +116,8 @@ FrameOfFile = Annotated[
     Frame, typer.Option("--frame", help="Frame of the file; auto goes by the evidence in it.")
 ]
 UnitOfFile = Annotated[
-    Unit | None, typer.Option("--unit", help="Unit of the file. [default: what its header tells, else m]")
+    Unit | None,
+    typer.Option("--unit", help="Unit of the file. [default: what its header tells, else m]"),
 ]
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of all that is random.")]
 Points = Annotated[

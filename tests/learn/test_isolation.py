@@ -21,9 +21,9 @@ from prunus.learn.isolation import (
 )
 from prunus.learn.school import Course, isolation_school
 from prunus.model import Kind
+from prunus.networks import open_network
 from prunus.sensing.isolate import SHOWN, TOLD
 from prunus.simulate.orchard import simulate_tree
-from prunus.stages.networks import open_network
 
 
 @pytest.fixture(scope="module")

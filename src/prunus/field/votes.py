@@ -19,6 +19,7 @@ LEAST_WOOD = 0.5  # probability of wood from which a voxel votes
 SHIFT_M = 0.02  # bandwidth of the mean shift
 LONELY_M, LEAST_VOTES = 0.03, 3.0  # fewer votes (weights) around one are noise
 APART_M = 0.012  # distance of the nodes that stand for the votes
+ALIKE_COS = 0.5  # votes whose directions differ more are of two branches that touch or cross
 LEAST_CHANCE = 1e-3  # probabilities below are taken for it when their logarithms are averaged
 
 
@@ -74,11 +75,11 @@ def gather_votes(field: PointField) -> Threads:
     """The threads of a field; empty where nothing is wood."""
     field = field.take(1 - field.role[:, Role.NO_WOOD] >= LEAST_WOOD)
     weight = np.sqrt(field.count)
-    voted = _mean_shift(field.xyz + field.offset, weight)
-    density = _around(voted, LONELY_M) @ weight
+    voted = _mean_shift(field.xyz + field.offset, field.toward_foot, weight)
+    density = _around(voted, field.toward_foot, LONELY_M) @ weight
     kept = density >= LEAST_VOTES
     field, voted, weight, density = field.take(kept), voted[kept], weight[kept], density[kept]
-    node = _node_of(voted, density)
+    node = _node_of(voted, field.toward_foot, density)
     total = np.bincount(node, weight)
 
     def mean(values: Floats) -> Floats:
@@ -99,28 +100,30 @@ def gather_votes(field: PointField) -> Threads:
     )
 
 
-def _around(xyz: Floats, reach: float) -> csr_array:
-    """Which points (N, N) lie within `reach` of which, each of itself too."""
-    pairs = cKDTree(xyz).query_pairs(reach, output_type="ndarray") if len(xyz) else np.zeros((0, 2))
+def _around(xyz: Floats, direction: Floats, reach: float) -> csr_array:
+    """Which points (N, N) lie within `reach` of which and run the same way; each of itself too."""
+    pairs = cKDTree(xyz).query_pairs(reach, output_type="ndarray")
+    alike = (direction[pairs[:, 0]] * direction[pairs[:, 1]]).sum(axis=1) > ALIKE_COS
+    pairs = pairs[alike]
     own = np.arange(len(xyz))
     rows = np.concatenate([pairs[:, 0], pairs[:, 1], own]).astype(np.int64)
     columns = np.concatenate([pairs[:, 1], pairs[:, 0], own]).astype(np.int64)
     return csr_array((np.ones(len(rows)), (rows, columns)), shape=(len(xyz), len(xyz)))
 
 
-def _mean_shift(xyz: Floats, weight: Floats) -> Floats:
+def _mean_shift(xyz: Floats, direction: Floats, weight: Floats) -> Floats:
     """One step: each point to the mean of those within the bandwidth."""
-    near = _around(xyz, SHIFT_M)
+    near = _around(xyz, direction, SHIFT_M)
     return np.asarray((near @ (weight[:, None] * xyz)) / (near @ weight)[:, None])
 
 
-def _node_of(xyz: Floats, density: Floats) -> Ints:
+def _node_of(xyz: Floats, direction: Floats, density: Floats) -> Ints:
     """The node (V,) that each vote belongs to: a maximal independent set, the densest first.
 
     In each round every vote that is the densest of those still free around it becomes a node, and
     takes those with it (Luby's algorithm with density for chance).
     """
-    near = _around(xyz, APART_M)
+    near = _around(xyz, direction, APART_M)
     rank = np.empty(len(xyz))
     rank[np.lexsort((*xyz.T, density))] = np.arange(1, len(xyz) + 1)
     owner, free = np.zeros(len(xyz), np.int64), rank.copy()

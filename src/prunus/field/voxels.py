@@ -96,6 +96,12 @@ def voxels_of(xyz: Floats, size: float = VOXEL_M, shift: Floats | None = None) -
     )
 
 
+def heights_of(xyz: Floats) -> tuple[float, float]:
+    """How high the lowest and the highest points (P, 3) are, metres; few strays do not count."""
+    low, high = np.percentile(xyz[:, 2], [0.5, 99.5])
+    return float(low), float(high)
+
+
 def _sums(values: Floats, owner: Ints, owners: int) -> Floats:
     """The sums (N, C) of the rows (P, C) that each owner has."""
     return np.column_stack([np.bincount(owner, column, owners) for column in values.T])

@@ -16,8 +16,9 @@ from prunus.learn.examples import Example
 from prunus.learn.lessons import Sources, Watch, lessons_from
 from prunus.learn.tables import measures, table
 from prunus.names import as_text
+from prunus.networks import WEIGHTS
 from prunus.params import Parameters
-from prunus.stages.networks import WEIGHTS, shipped_or_own
+from prunus.stages.networks import shipped_or_own
 
 
 @dataclass(frozen=True)

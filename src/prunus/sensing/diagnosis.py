@@ -101,7 +101,8 @@ def _lying(cloud: PointCloud, xyz: Floats) -> str:
 
 
 def _no_branches(cloud: PointCloud, xyz: Floats) -> str:
-    if local_wood(Cells.of(xyz)).linear.mean() > LINEAR:
+    linear = local_wood(Cells.of(xyz)).linear
+    if len(linear) and linear.mean() > LINEAR:
         return ""
     return f"hardly anything in it is like a branch: {TRY}"
 

@@ -15,12 +15,13 @@ from prunus.errors import NoTreeError, PrunusError
 from prunus.kernels.forest import components
 from prunus.kernels.neighbours import nearest
 from prunus.model import Bools, Floats, Ints, Kind, PointCloud, ScoredGraph
+from prunus.networks import WEIGHTS, open_network
 from prunus.params import Parameters
 from prunus.sensing.surroundings import Pieces
 from prunus.sensing.trunks import Trunk, find_trunks, foot_of
 from prunus.stages.candidates import find_candidates
 from prunus.stages.confidence import score_edges
-from prunus.stages.networks import WEIGHTS, NetworkScorer, open_network
+from prunus.stages.networks import NetworkScorer
 from prunus.stages.seeds import WEEDS_M
 from prunus.stages.superpoints import find_superpoints
 

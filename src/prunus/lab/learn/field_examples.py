@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from prunus.field.voxels import Voxels, voxels_of
+from prunus.field.voxels import Voxels, heights_of, voxels_of
 from prunus.io.arrays import read_arrays, write_arrays
 from prunus.lab.simulate.points import PointTruth, point_truth
 from prunus.model import Bools, Floats, Ints, Kind, Role
@@ -139,7 +139,7 @@ def lesson_of(example: FieldExample, rng: np.random.Generator | None = None) -> 
 
     role = np.full(len(weight), int(Role.NO_WOOD))
     role[voxel] = example.truth.role[chosen]
-    ground, top = height_of(example.xyz)
+    ground, top = heights_of(example.xyz)
     if rng is not None:
         ground += rng.normal(0, GROUND_M)
     features = voxels.features(ground, top)
@@ -151,12 +151,6 @@ def lesson_of(example: FieldExample, rng: np.random.Generator | None = None) -> 
         radius=mean(example.truth.radius)[:, 0],
         toward_foot=mean(example.truth.toward_foot),
     )
-
-
-def height_of(xyz: Floats) -> tuple[float, float]:
-    """The height of the lowest and of the highest points, metres; few strays do not count."""
-    low, high = np.percentile(xyz[:, 2], [0.5, 99.5])
-    return float(low), float(high)
 
 
 def _of_most(voxel: Ints, branch: Ints, voxels: int) -> Bools:

@@ -12,14 +12,11 @@ from typing import Any, NamedTuple
 import torch
 from torch import Tensor, nn
 
+from prunus.field.network import COLUMNS
 from prunus.field.voxels import FEATURES, NEIGHBOURS, Level
-from prunus.model import Role
 
 CHANNELS = (24, 32, 48, 64, 64)
 HEAD = 48
-OUTPUTS = {"role": len(Role), "offset": 3, "log_radius": 1, "toward_foot": 3}
-OFFSET_M = 0.03  # an offset of 1 is so long
-RADIUS_M = 0.01  # a log radius of 0 is this
 
 
 class Tables(NamedTuple):
@@ -102,7 +99,7 @@ class Residual(nn.Module):
 
 
 class FieldNet(nn.Module):
-    """Features (V, `FEATURES`) of the finest voxels to the columns of `OUTPUTS`, side by side."""
+    """Features (V, `FEATURES`) of the finest voxels to the columns of `COLUMNS`, side by side."""
 
     def __init__(self, channels: Sequence[int] = CHANNELS) -> None:
         super().__init__()
@@ -114,7 +111,7 @@ class FieldNet(nn.Module):
         self.widen = nn.ModuleList(nn.Linear(a + b, a) for a, b in zip(finer, coarser, strict=True))
         self.up = nn.ModuleList(Residual(width) for width in finer)
         self.head = nn.Sequential(
-            nn.Linear(channels[0], HEAD), nn.ReLU(), nn.Linear(HEAD, sum(OUTPUTS.values()))
+            nn.Linear(channels[0], HEAD), nn.ReLU(), nn.Linear(HEAD, sum(COLUMNS.values()))
         )
 
     def forward(self, features: Tensor, tables: Tables) -> Tensor:

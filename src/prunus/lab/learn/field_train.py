@@ -13,9 +13,10 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from prunus.field.network import COLUMNS, OFFSET_M, RADIUS_M
 from prunus.io.safely import write_bytes
 from prunus.lab.learn.field_examples import FieldExample, Lesson, lesson_of
-from prunus.lab.learn.field_net import OFFSET_M, OUTPUTS, RADIUS_M, FieldNet, Tables
+from prunus.lab.learn.field_net import FieldNet, Tables
 from prunus.lab.simulate.points import UNKNOWN_ROLE
 from prunus.model import Role
 
@@ -60,7 +61,7 @@ def losses_of(outputs: Tensor, batch: Batch) -> dict[str, Tensor]:
 
     Where wood is of no known role, being taken for wood at all is what counts.
     """
-    logits, offset, log_radius, direction = torch.split(outputs, list(OUTPUTS.values()), dim=1)
+    logits, offset, log_radius, direction = torch.split(outputs, list(COLUMNS.values()), dim=1)
     known, wood = batch.role != UNKNOWN_ROLE, batch.role != Role.NO_WOOD
     weight = torch.tensor(CLASS_WEIGHT)
     told = nn.functional.cross_entropy(logits[known], batch.role[known], weight, reduction="sum")

@@ -1,0 +1,112 @@
+"""The graph of the threads: which nodes may be joined, and what it costs to grow over an edge.
+
+Nodes close together are joined; loose pieces are bridged over gaps. To grow over an edge costs its
+length, more where the way does not go as the network says that wood runs there, and much more
+where it crosses a gap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from prunus.field.votes import Threads
+from prunus.model import Bools, Floats, Ints
+
+NEAR_M = 0.04
+"""Nodes so close are joined."""
+FAR_M = 0.50
+"""Gaps up to this are bridged."""
+BRIDGES = 12
+"""So many bridges at most between two pieces, the cheapest."""
+ASTRAY = 8.0
+"""What a metre costs more for each unit by which its direction is off (one less the cosine)."""
+ASTRAY_IN_GAP = 8.0
+"""The same across a gap, where nothing else is seen."""
+GAP, GAP_SQUARED = 4.0, 6.0
+"""What a metre of a gap costs more, and a square metre."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ThreadGraph:
+    """The threads (N nodes) and edges (E, 2) between them, i < j; `gap` (E,): a bridge."""
+
+    threads: Threads
+    edges: Ints
+    gap: Bools
+
+    @cached_property
+    def outward(self) -> Ints:
+        """Both directions of each edge (2 E, 2), from nearer the foot to farther."""
+        return np.concatenate([self.edges, self.edges[:, ::-1]])
+
+    @cached_property
+    def costs(self) -> Floats:
+        """What it costs to grow over each of `outward` (2 E,)."""
+        return growth_costs(self.threads, self.outward, np.tile(self.gap, 2))
+
+    @cached_property
+    def matrix(self) -> csr_array:
+        """The costs (N, N), from row to column."""
+        size = len(self.threads)
+        return csr_array((self.costs, tuple(self.outward.T)), shape=(size, size))
+
+
+def growth_costs(threads: Threads, outward: Ints, gap: Bools) -> Floats:
+    """What it costs (E,) to grow over edges (E, 2) from their first node to their second."""
+    way = threads.xyz[outward[:, 1]] - threads.xyz[outward[:, 0]]
+    length = np.maximum(np.linalg.norm(way, axis=1), 1e-9)
+    toward_foot = threads.toward_foot[outward[:, 1]]
+    off = 1 + (way * toward_foot).sum(axis=1) / length
+    along = length * (1 + np.where(gap, ASTRAY_IN_GAP, ASTRAY) * off)
+    across = np.where(gap, GAP * length + GAP_SQUARED * length**2, 0.0)
+    return np.asarray(along + across)
+
+
+def join_threads(threads: Threads) -> ThreadGraph:
+    """The graph of some threads."""
+    tree = cKDTree(threads.xyz)
+    near = tree.query_pairs(NEAR_M, output_type="ndarray").astype(np.int64)
+    bridges = _bridges(threads, tree, near)
+    edges = np.concatenate([near, bridges])
+    gap = np.arange(len(edges)) >= len(near)
+    order = np.lexsort(edges.T[::-1])
+    return ThreadGraph(threads=threads, edges=edges[order], gap=gap[order])
+
+
+def pieces_of(size: int, edges: Ints) -> Ints:
+    """The piece (N,) that each node is in."""
+    ones = np.ones(len(edges))
+    _, piece = connected_components(csr_array((ones, tuple(edges.T)), shape=(size, size)), False)
+    return np.asarray(piece, np.int64)
+
+
+def _bridges(threads: Threads, tree: cKDTree, near: Ints) -> Ints:
+    """The cheapest bridges (B, 2) between pieces that lie within reach of each other."""
+    piece = pieces_of(len(threads), near)
+    sizes = np.bincount(piece)
+    loose = np.flatnonzero(piece != sizes.argmax())  # from the largest it is the way back
+    if len(loose) == 0:
+        return np.zeros((0, 2), np.int64)
+    found = cKDTree(threads.xyz[loose]).sparse_distance_matrix(tree, FAR_M, output_type="ndarray")
+    pairs = np.column_stack([loose[found["i"]], found["j"]])
+    pairs = np.unique(np.sort(pairs[piece[pairs[:, 0]] != piece[pairs[:, 1]]], axis=1), axis=0)
+    yes = np.ones(len(pairs), np.bool_)
+    there, back = (growth_costs(threads, way, yes) for way in (pairs, pairs[:, ::-1]))
+    ends = np.sort(piece[pairs], axis=1)
+    kept = [_cheapest(ends, cost) for cost in (there, back)]
+    return pairs[np.unique(np.concatenate(kept))]
+
+
+def _cheapest(ends: Ints, cost: Floats) -> Ints:
+    """The rows of the cheapest pairs of each two pieces (B, 2)."""
+    order = np.lexsort((cost, *ends.T))
+    first = np.append(True, (np.diff(ends[order], axis=0) != 0).any(axis=1))
+    start = np.flatnonzero(first)
+    rank = np.arange(len(order)) - np.repeat(start, np.diff(np.append(start, len(order))))
+    return np.asarray(order[rank < BRIDGES])

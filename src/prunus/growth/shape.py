@@ -1,0 +1,89 @@
+"""A grown tree as it is while parents may still change: who hangs on whom, lengths, directions."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from prunus.model import Floats, Ints
+
+ALONG_M = 0.08
+"""Over so much of a branch its direction is taken."""
+
+
+class Tree:
+    """Rows xyz (M, 3) and the row `parent` on which each hangs; row 0 is the foot, -1 above it."""
+
+    def __init__(self, xyz: Floats, parent: Ints) -> None:
+        self.xyz, self.parent = xyz, parent
+        self.step = np.linalg.norm(xyz - xyz[np.maximum(parent, 0)], axis=1)
+
+    @cached_property
+    def children(self) -> list[list[int]]:
+        """The rows that hang on each."""
+        found: list[list[int]] = [[] for _ in self.parent]
+        for row, above in enumerate(self.parent.tolist()):
+            if above >= 0:
+                found[above].append(row)
+        return found
+
+    @cached_property
+    def order(self) -> list[int]:
+        """The rows, each after that on which it hangs."""
+        found = [0]
+        for row in found:
+            found += self.children[row]
+        return found
+
+    @cached_property
+    def reach(self) -> Floats:
+        """The length (M,) of the longest way outward from each row."""
+        found = np.zeros(len(self.parent))
+        for row in reversed(self.order[1:]):
+            above = self.parent[row]
+            found[above] = max(found[above], found[row] + self.step[row])
+        return found
+
+    @cached_property
+    def tail(self) -> Floats:
+        """The direction (M, 3) in which wood comes to each row from below; zero at the foot."""
+        at, length = np.arange(len(self.parent)), np.zeros(len(self.parent))
+        for _ in range(len(self.parent)):
+            goes = (self.parent[at] >= 0) & (length < ALONG_M)
+            if not goes.any():
+                break
+            length += np.where(goes, self.step[at], 0.0)
+            at = np.where(goes, self.parent[at], at)
+        return _unit(self.xyz - self.xyz[at])
+
+    @cached_property
+    def head(self) -> Floats:
+        """The direction (M, 3) in which the longest branch goes on from each row; zero at tips."""
+        longest = np.arange(len(self.parent))
+        most = np.zeros(len(self.parent))
+        for row in self.order[1:]:
+            above, length = self.parent[row], self.reach[row] + self.step[row]
+            if length > most[above]:
+                longest[above], most[above] = row, length
+        at, length = np.arange(len(self.parent)), np.zeros(len(self.parent))
+        for _ in range(len(self.parent)):
+            on = longest[at]
+            goes = (on != at) & (length < ALONG_M)
+            if not goes.any():
+                break
+            length += np.where(goes, self.step[on], 0.0)
+            at = np.where(goes, on, at)
+        return _unit(self.xyz[at] - self.xyz)
+
+    @cached_property
+    def turn(self) -> list[float]:
+        """How much wood turns (M,) from the parent of each row to it: 0 straight on, 2 back."""
+        onward = _unit(self.xyz - self.xyz[np.maximum(self.parent, 0)] + ALONG_M * self.head)
+        coming = self.tail[np.maximum(self.parent, 0)]
+        found: list[float] = (1 - (onward * coming).sum(axis=1)).tolist()
+        return found
+
+
+def _unit(vectors: Floats) -> Floats:
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9))
