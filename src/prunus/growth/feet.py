@@ -17,21 +17,23 @@ STEM_APART_M = 0.08
 LEAST_STEM_M = 0.06
 """A stem is at least so long."""
 LEADS_TO = 6.0
-"""A foot to which one may grow from another at this cost (metres) is none, but wood of that tree."""
+"""A foot to which one may grow from another at this cost, metres, is wood of that tree."""
 
 
-def find_feet(graph: ThreadGraph) -> Ints:
+def find_feet(graph: ThreadGraph, given: int | None = None) -> Ints:
     """The nodes (F,) where trees stand, those with most stem first; the lowest end where none is.
 
-    A foot is the end of a stem to which its directions point, and to which no other tree leads.
+    A foot is the end of a stem to which its directions point, and to which no other tree leads. One
+    that was given is the first.
     """
     threads = graph.threads
     stem = np.flatnonzero(threads.role[:, Role.STEM] >= LEAST_STEM)
     piece = pieces_of(len(stem), _pairs(threads.xyz[stem], STEM_APART_M))
     found = [_low_end(threads, stem[piece == one]) for one in range(piece.max(initial=-1) + 1)]
     ends = [(-mass, node) for node, mass, length in found if length >= LEAST_STEM_M]
-    feet = np.array([node for _, node in sorted(ends)], np.int64)
-    return _own_feet(graph, feet) if len(feet) else _lowest(graph)
+    feet = [node for _, node in sorted(ends)]
+    feet = feet if given is None else [given, *feet]
+    return _own_feet(graph, feet) if feet else _lowest(graph)
 
 
 def _pairs(xyz: Floats, reach: float) -> Ints:
@@ -41,13 +43,13 @@ def _pairs(xyz: Floats, reach: float) -> Ints:
     return np.asarray(cKDTree(xyz).query_pairs(reach, output_type="ndarray"), np.int64)
 
 
-def _own_feet(graph: ThreadGraph, feet: Ints) -> Ints:
+def _own_feet(graph: ThreadGraph, feet: list[int]) -> Ints:
     """Those feet that wood does not lead to from one with more stem.
 
     To come to the foot of another tree, a way goes down its trunk against the flow, which is dear.
     """
     own: list[int] = []
-    for foot in feet.tolist():
+    for foot in feet:
         if not own or dijkstra(graph.matrix, indices=own, min_only=True)[foot] > LEADS_TO:
             own.append(foot)
     return np.array(own)

@@ -20,8 +20,8 @@ from prunus.model import Bools, Floats, Ints
 
 NEAR_M = 0.04
 """Nodes so close are joined."""
-FAR_M = 0.50
-"""Gaps up to this are bridged."""
+GAPS_M = (0.30, 0.50)
+"""Gaps up to the first are bridged; up to the second those of pieces that hang loose then."""
 BRIDGES = 12
 """So many bridges at most between two pieces, the cheapest."""
 ASTRAY = 8.0
@@ -72,8 +72,9 @@ def join_threads(threads: Threads) -> ThreadGraph:
     """The graph of some threads."""
     tree = cKDTree(threads.xyz)
     near = tree.query_pairs(NEAR_M, output_type="ndarray").astype(np.int64)
-    bridges = _bridges(threads, tree, near)
-    edges = np.concatenate([near, bridges])
+    edges = near
+    for reach in GAPS_M:
+        edges = np.concatenate([edges, _bridges(threads, tree, edges, reach)])
     gap = np.arange(len(edges)) >= len(near)
     order = np.lexsort(edges.T[::-1])
     return ThreadGraph(threads=threads, edges=edges[order], gap=gap[order])
@@ -86,27 +87,28 @@ def pieces_of(size: int, edges: Ints) -> Ints:
     return np.asarray(piece, np.int64)
 
 
-def _bridges(threads: Threads, tree: cKDTree, near: Ints) -> Ints:
+def _bridges(threads: Threads, tree: cKDTree, edges: Ints, reach: float) -> Ints:
     """The cheapest bridges (B, 2) between pieces that lie within reach of each other."""
-    piece = pieces_of(len(threads), near)
-    sizes = np.bincount(piece)
-    loose = np.flatnonzero(piece != sizes.argmax())  # from the largest it is the way back
-    if len(loose) == 0:
+    piece = pieces_of(len(threads), edges)
+    loose = piece != np.bincount(piece).argmax()  # from the largest it is the way back
+    some = np.flatnonzero(loose)
+    if len(some) == 0:
         return np.zeros((0, 2), np.int64)
-    found = cKDTree(threads.xyz[loose]).sparse_distance_matrix(tree, FAR_M, output_type="ndarray")
-    pairs = np.column_stack([loose[found["i"]], found["j"]])
-    pairs = np.unique(np.sort(pairs[piece[pairs[:, 0]] != piece[pairs[:, 1]]], axis=1), axis=0)
+    found = cKDTree(threads.xyz[some]).sparse_distance_matrix(tree, reach, output_type="ndarray")
+    pairs = np.column_stack([some[found["i"]], found["j"]])
+    once = ~loose[pairs[:, 1]] | (pairs[:, 0] < pairs[:, 1])
+    pairs = pairs[once & (piece[pairs[:, 0]] != piece[pairs[:, 1]])]
     yes = np.ones(len(pairs), np.bool_)
     there, back = (growth_costs(threads, way, yes) for way in (pairs, pairs[:, ::-1]))
-    ends = np.sort(piece[pairs], axis=1)
+    ends = np.sort(piece[pairs], axis=1) @ np.array([len(threads), 1])
     kept = [_cheapest(ends, cost) for cost in (there, back)]
-    return pairs[np.unique(np.concatenate(kept))]
+    return np.sort(pairs[np.unique(np.concatenate(kept))], axis=1)
 
 
 def _cheapest(ends: Ints, cost: Floats) -> Ints:
-    """The rows of the cheapest pairs of each two pieces (B, 2)."""
-    order = np.lexsort((cost, *ends.T))
-    first = np.append(True, (np.diff(ends[order], axis=0) != 0).any(axis=1))
+    """The rows of the cheapest pairs of each two pieces, which `ends` (B,) number."""
+    order = np.lexsort((cost, ends))
+    first = np.append(True, np.diff(ends[order]) != 0)
     start = np.flatnonzero(first)
     rank = np.arange(len(order)) - np.repeat(start, np.diff(np.append(start, len(order))))
     return np.asarray(order[rank < BRIDGES])

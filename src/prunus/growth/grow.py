@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from prunus.field.votes import Threads
 from prunus.growth.branches import cut_branches
 from prunus.growth.feet import find_feet, nearest_foot
@@ -16,9 +14,7 @@ from prunus.model import Floats, Skeleton
 def grow(threads: Threads, base: Floats | None = None) -> Skeleton:
     """The tree of some threads: of that at `base` (3,), or of the largest."""
     graph = join_threads(threads)
-    feet = find_feet(graph)
-    if base is not None:
-        feet = np.array([nearest_foot(threads, base)])
+    feet = find_feet(graph, None if base is None else nearest_foot(threads, base))
     foot = int(feet[0])
     grown = cut_branches(threads, find_ways(graph, feet), foot)
     grown, told = choose_parents(threads, grown)

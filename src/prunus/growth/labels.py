@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.growth.shape import Tree
-from prunus.model import Floats, Ints, Label, Role
+from prunus.growth.shape import FORKS, Tree
+from prunus.model import Bools, Floats, Ints, Label, Role
 
 LEAST = 0.02
 """A probability is never taken for less: one voxel does not forbid a label."""
@@ -29,22 +29,25 @@ FORK = np.array([9.0, 1.0, 0.5, 0.1])
 TURN = 0.3
 """What it costs if one label turns at a fork, for each unit of one less the cosine."""
 NEVER = -1e9
+"""What is not allowed is worth so little."""
 
-LATER = [
-    [(int(later), cost) for (earlier, later), cost in CHANGE.items() if earlier == label]
-    for label in Label
-]
+CHANGES = np.full((len(Label), len(Label)), -NEVER)
+"""What it costs (4, 4) to change from one label to another."""
+for _pair, _cost in CHANGE.items():
+    CHANGES[_pair] = _cost
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Labelled:
     """The labels (M,) of the edges into the rows of a tree, and the value of all together.
 
-    best (M, 4): what is above each edge, itself included, is worth under each of its labels.
+    best (M, 4): what each edge and all above it is worth under each of its labels; other (M, 4):
+    under the best label that may leave each of the labels.
     """
 
     label: Ints
     best: Floats
+    other: Floats
     value: float
 
 
@@ -53,19 +56,17 @@ def label_tree(tree: Tree, roles: Floats) -> Labelled:
 
     Row 0, the foot, has the label of the first edge.
     """
-    worth = _worth(roles, tree.step).tolist()
-    best = np.zeros((len(tree.parent), len(Label))).tolist()
-    chosen: list[list[list[int]]] = [[] for _ in tree.parent]
-    for row in reversed(tree.order[1:]):
-        below = tree.children[row]
-        turns = [TURN * tree.turn[child] for child in below] if len(below) > 1 else [0.0]
-        for label in range(len(Label)):
-            value, picks = _above(best, below, turns, label)
-            best[row][label] = worth[row][label] + value
-            chosen[row].append(picks)
-    told = _told(tree, chosen)
-    value = float(sum(best[child][told[child]] for child in tree.children[0]))
-    return Labelled(label=told, best=np.array(best), value=value)
+    best = _worth(roles, tree.step)
+    other, later = np.empty_like(best), np.empty(best.shape, np.int64)
+    goes_on = np.zeros(best.shape, np.bool_)
+    for rows in tree.levels:  # from the tips down: all above them is known
+        best[rows] += _above(tree, best, other, goes_on, rows)
+        changed = best[rows, None, :] - CHANGES
+        later[rows] = changed.argmax(axis=2)
+        other[rows] = changed.max(axis=2)
+    label = _told(tree, later, goes_on)
+    value = float(best[tree.children[0], label[tree.children[0]]].sum())
+    return Labelled(label=label, best=best, other=other, value=value)
 
 
 def chances(roles: Floats) -> Floats:
@@ -79,32 +80,31 @@ def _worth(roles: Floats, step: Floats) -> Floats:
     return np.asarray(step[:, None] * np.log(chances(roles) + LEAST))
 
 
-def _above(
-    best: list[list[float]], children: list[int], turns: list[float], label: int
-) -> tuple[float, list[int]]:
-    """The best that the children of an edge with that label are worth, and their labels."""
-    total, picks, gains = 0.0, list[int](), list[float]()
-    for child, turn in zip(children, turns, strict=bool(children)):
-        options = [(best[child][later] - cost, later) for later, cost in LATER[label]]
-        value, other = max(options, default=(NEVER, label))
-        total += value
-        picks.append(other)
-        gains.append(best[child][label] - turn - value)
-    order = sorted(range(len(children)), key=lambda one: -gains[one])
-    for place, one in enumerate(order):
-        gain = gains[one] - (FORK[label] if place else 0.0)
-        if gain > 0:
-            total += gain
-            picks[one] = label
-    return total, picks
+def _above(tree: Tree, best: Floats, other: Floats, goes_on: Bools, rows: Ints) -> Floats:
+    """What is above the edges into some rows is worth (R, 4) under each of their labels.
+
+    `goes_on` (M, 4) is set for what hangs on them: whether it keeps the label of its parent.
+    """
+    above = np.zeros((len(rows), len(Label)))
+    single = tree.only_child[rows]
+    one, child = np.flatnonzero(single >= 0), single[single >= 0]
+    goes_on[child] = best[child] >= other[child]
+    above[one] = np.maximum(best[child], other[child])
+    for place in np.flatnonzero(single == FORKS):
+        below = tree.children[rows[place]]
+        gain = best[below] - TURN * tree.turn[below][:, None] - other[below]
+        # One may go on with the label for nothing, each other one for the price of a fork.
+        gain -= np.where(gain == gain.max(axis=0), 0.0, FORK)
+        goes_on[below] = gain > 0
+        above[place] = (other[below] + np.maximum(gain, 0.0)).sum(axis=0)
+    return above
 
 
-def _told(tree: Tree, chosen: list[list[list[int]]]) -> Ints:
+def _told(tree: Tree, later: Ints, goes_on: Bools) -> Ints:
     """The labels, from the foot upward."""
     label = np.zeros(len(tree.parent), np.int64)
-    for row in tree.order:
-        below = tree.children[row]
-        picks = [int(Label.TRUNK)] * len(below) if row == 0 else chosen[row][label[row]]
-        for child, pick in zip(below, picks, strict=True):
-            label[child] = pick
+    for rows in tree.levels[::-1]:
+        own = label[tree.parent[rows]]
+        told = np.where(goes_on[rows, own], own, later[rows, own])
+        label[rows] = np.where(tree.parent[rows] == 0, int(Label.TRUNK), told)
     return label

@@ -12,12 +12,14 @@ from scipy.spatial import cKDTree
 from prunus.field.votes import Threads
 from prunus.growth.branches import Grown
 from prunus.growth.graph import growth_costs
-from prunus.growth.labels import FORK, LATER, TURN, Labelled, label_tree
-from prunus.growth.shape import Tree
+from prunus.growth.labels import FORK, TURN, Labelled, label_tree
+from prunus.growth.shape import TIP, Tree
 from prunus.model import Bools, Floats, Ints
 
 REACH_M = 0.20
-"""A branch may hang on any node so near to its foot."""
+"""A branch may hang on any node so near to its foot,"""
+END_REACH_M = 0.40
+"""and on an end that is so near: what goes on may be hidden."""
 ROUNDS = 6
 """By then nothing changes."""
 COST = 0.5
@@ -49,7 +51,9 @@ def _in_order(nodes: Ints, tree: Tree, told: Labelled) -> tuple[Grown, Labelled]
     place[order] = np.arange(len(order))
     parent = place[tree.parent[order]]
     parent[0] = -1
-    labelled = Labelled(label=told.label[order], best=told.best[order], value=told.value)
+    labelled = Labelled(
+        label=told.label[order], best=told.best[order], other=told.other[order], value=told.value
+    )
     return Grown(nodes=nodes[order], parent=parent), labelled
 
 
@@ -62,9 +66,7 @@ def _better_parents(threads: Threads, nodes: Ints, tree: Tree, told: Labelled) -
     parent = tree.parent.copy()
     if len(forks) == 0:
         return parent
-    near = cKDTree(tree.xyz).query_ball_point(tree.xyz[forks], REACH_M)
-    row = np.repeat(forks, [len(some) for some in near])
-    host = np.concatenate([np.array(some, np.int64) for some in near])
+    row, host = _places(tree, forks)
     kept = (host != row) & (host != 0)
     row, host = row[kept], host[kept]
     value = _value(threads, nodes, tree, told, row, host)
@@ -82,6 +84,16 @@ def _better_parents(threads: Threads, nodes: Ints, tree: Tree, told: Labelled) -
     return parent
 
 
+def _places(tree: Tree, rows: Ints) -> tuple[Ints, Ints]:
+    """Rows and hosts (B,) on which each may hang: what is near, and ends not much farther."""
+    tips = np.flatnonzero(tree.only_child == TIP)
+    near = cKDTree(tree.xyz).query_ball_point(tree.xyz[rows], REACH_M)
+    ends = cKDTree(tree.xyz[tips]).query_ball_point(tree.xyz[rows], END_REACH_M)
+    hosts = [np.union1d(some, tips[ahead]) for some, ahead in zip(near, ends, strict=True)]
+    row = np.repeat(rows, [len(some) for some in hosts])
+    return row, np.concatenate(hosts).astype(np.int64)
+
+
 def _free(parent: Ints, moved: Bools, row: int, host: int) -> bool:
     """Whether neither was moved in this round, and the host is not above the row."""
     if moved[row] or moved[host]:
@@ -96,27 +108,23 @@ def _value(
 ) -> Floats:
     """What it is worth (B,) if branches hang by their first row on hosts, whose labels stay."""
     label = told.label[host]
-    as_other = np.array([
-        max((told.best[one, later] - cost for later, cost in LATER[own]), default=-np.inf)
-        for one, own in zip(row.tolist(), label.tolist(), strict=True)
-    ])  # fmt: skip
-    goes_on = _goes_on(tree, told, row, host)
     way = tree.xyz[row] - tree.xyz[host]
     onward = _unit(way + 0.08 * tree.head[row])
     turn = 1 - (onward * tree.tail[host]).sum(axis=1)
-    as_same = told.best[row, label] - TURN * turn - np.where(goes_on, FORK[label], 0.0)
+    fork = np.where(_goes_on(tree, told, row, host), FORK[label], 0.0)
+    as_same = told.best[row, label] - TURN * turn - fork
     outward = np.column_stack([nodes[host], nodes[row]])
     gap = np.linalg.norm(way, axis=1) > 0.04
     cost = growth_costs(threads, outward, gap)
-    return np.asarray(np.maximum(as_other, as_same) - COST * cost)
+    return np.asarray(np.maximum(told.other[row, label], as_same) - COST * cost)
 
 
 def _goes_on(tree: Tree, told: Labelled, row: Ints, host: Ints) -> Bools:
     """Whether something else (B,) than the row goes on from the host with the host's label."""
-    return np.array([
-        any(told.label[child] == told.label[at] for child in tree.children[at] if child != one)
-        for one, at in zip(row.tolist(), host.tolist(), strict=True)
-    ])  # fmt: skip
+    alike = told.label[1:] == told.label[tree.parent[1:]]
+    count = np.bincount(tree.parent[1:][alike], minlength=len(tree.parent))
+    itself = (tree.parent[row] == host) & (told.label[row] == told.label[host])
+    return np.asarray(count[host] > itself)
 
 
 def _unit(vectors: Floats) -> Floats:

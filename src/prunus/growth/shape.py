@@ -10,6 +10,8 @@ from prunus.model import Floats, Ints
 
 ALONG_M = 0.08
 """Over so much of a branch its direction is taken."""
+TIP, FORKS = -1, -2
+"""In place of the only row that hangs on one: none, or several."""
 
 
 class Tree:
@@ -27,6 +29,26 @@ class Tree:
             if above >= 0:
                 found[above].append(row)
         return found
+
+    @cached_property
+    def only_child(self) -> Ints:
+        """The row (M,) that hangs on each where it is the only one; else `TIP` or `FORKS`."""
+        count = np.bincount(self.parent[1:], minlength=len(self.parent))
+        found = np.where(count > 1, FORKS, TIP)
+        rows = np.arange(1, len(self.parent))
+        single = rows[count[self.parent[1:]] == 1]
+        found[self.parent[single]] = single
+        return found
+
+    @cached_property
+    def levels(self) -> list[Ints]:
+        """All rows but the foot in groups, tips first: what hangs on a row is in an earlier one."""
+        height = np.zeros(len(self.parent), np.int64)
+        parent = self.parent.tolist()
+        for row in reversed(self.order[1:]):
+            height[parent[row]] = max(height[parent[row]], height[row] + 1)
+        order = np.argsort(height[1:], kind="stable") + 1
+        return np.split(order, np.flatnonzero(np.diff(height[order])) + 1) if len(order) else []
 
     @cached_property
     def order(self) -> list[int]:
@@ -77,12 +99,11 @@ class Tree:
         return _unit(self.xyz[at] - self.xyz)
 
     @cached_property
-    def turn(self) -> list[float]:
+    def turn(self) -> Floats:
         """How much wood turns (M,) from the parent of each row to it: 0 straight on, 2 back."""
         onward = _unit(self.xyz - self.xyz[np.maximum(self.parent, 0)] + ALONG_M * self.head)
         coming = self.tail[np.maximum(self.parent, 0)]
-        found: list[float] = (1 - (onward * coming).sum(axis=1)).tolist()
-        return found
+        return np.asarray(1 - (onward * coming).sum(axis=1))
 
 
 def _unit(vectors: Floats) -> Floats:

@@ -1,0 +1,56 @@
+"""Threads of drawn trees: nodes every 12 mm along polylines, all that is said of them right."""
+
+import itertools
+
+import numpy as np
+
+from prunus.field.votes import Threads
+from prunus.model import Floats, Role
+
+APART_M = 0.012
+Piece = tuple[Role, list[tuple[float, float, float]], float]
+"""Role, corners from the foot outward, radius."""
+
+TEXTBOOK: list[Piece] = [
+    (Role.STEM, [(0, 0, 0), (0, 0, 0.6)], 0.03),
+    (Role.FRAMEWORK, [(0, 0, 0.61), (0.9, 0, 0.65)], 0.02),
+    (Role.FRAMEWORK, [(0, 0, 0.61), (-0.9, 0, 0.65)], 0.02),
+    *[(Role.FRUITING_UNIT, [(x, 0, 0.67), (x, 0, 1.9)], 0.012) for x in (-0.8, -0.4, 0.4, 0.8)],
+    (Role.LATERAL, [(0.415, 0, 1.2), (0.6, 0.05, 1.3)], 0.004),
+    (Role.LATERAL, [(-0.415, 0, 1.4), (-0.6, -0.1, 1.5)], 0.004),
+]
+"""Four leaders on two supports, two side branches."""
+
+
+def threads_of(pieces: list[Piece], seed: int | None = None) -> Threads:
+    """The threads of some pieces; with a seed every place is a few millimetres off."""
+    xyz, role, radius, toward_foot = [], [], [], []
+    for one, corners, thick in pieces:
+        nodes, direction = _along(np.array(corners, np.float64))
+        xyz.append(nodes)
+        toward_foot.append(-direction)
+        role += [one] * len(nodes)
+        radius += [thick] * len(nodes)
+    places = np.concatenate(xyz)
+    if seed is not None:
+        places = places + np.random.default_rng(seed).normal(0, 0.002, places.shape)
+    chance = np.full((len(role), len(Role)), 0.02)
+    chance[np.arange(len(role)), role] = 0.90
+    return Threads(
+        xyz=places,
+        role=chance,
+        radius=np.array(radius),
+        toward_foot=np.concatenate(toward_foot),
+        votes=np.full(len(role), 5.0),
+        scatter=np.zeros(len(role)),
+    )
+
+
+def _along(corners: Floats) -> tuple[Floats, Floats]:
+    nodes, directions = [], []
+    for start, end in itertools.pairwise(corners):
+        length = np.linalg.norm(end - start)
+        share = np.arange(0, length, APART_M)[:, None] / length
+        nodes.append(start + share * (end - start))
+        directions.append(np.repeat([(end - start) / length], len(share), axis=0))
+    return np.concatenate(nodes), np.concatenate(directions)
