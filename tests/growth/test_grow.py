@@ -1,5 +1,7 @@
 """Threads of drawn trees grow to the trees that were drawn."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -104,11 +106,8 @@ def test_sure_wood_without_a_legal_place_stays_under_the_best_legal_label() -> N
 def test_a_turned_tree_grows_turned(angle: float) -> None:
     threads = threads_of(TEXTBOOK, 1)
     turn = turned(np.array([0, 0, np.radians(angle)]))
-    other = threads_of(TEXTBOOK, 1)
-    moved = type(other)(
-        xyz=threads.xyz @ turn.T, role=threads.role, radius=threads.radius,
-        toward_foot=threads.toward_foot @ turn.T, votes=threads.votes, scatter=threads.scatter,
-    )  # fmt: skip
+    toward_foot = threads.toward_foot @ turn.T
+    moved = replace(threads, xyz=threads.xyz @ turn.T, toward_foot=toward_foot)
     here = grow(threads).moved(RigidMotion(turn, np.zeros(3)))
     there = grow(moved)
     assert np.allclose(here.xyz, there.xyz, atol=1e-6)

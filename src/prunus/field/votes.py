@@ -57,7 +57,7 @@ class Threads:
 
     xyz (N, 3); role (N, 6), probabilities; radius (N,), metres; toward_foot (N, 3), unit; votes
     (N,), the root of the points of each voxel, summed; scatter (N,), how far its votes lie from
-    it, metres.
+    it, metres; of_voxel (V,), the node for which each voxel of the field voted, -1 = none.
     """
 
     xyz: Floats
@@ -66,6 +66,7 @@ class Threads:
     toward_foot: Floats
     votes: Floats
     scatter: Floats
+    of_voxel: Ints
 
     def __len__(self) -> int:
         return len(self.xyz)
@@ -73,13 +74,15 @@ class Threads:
 
 def gather_votes(field: PointField) -> Threads:
     """The threads of a field; empty where nothing is wood."""
-    field = field.take(1 - field.role[:, Role.NO_WOOD] >= LEAST_WOOD)
+    wood = np.flatnonzero(1 - field.role[:, Role.NO_WOOD] >= LEAST_WOOD)
+    of_voxel, field = np.full(len(field.xyz), -1), field.take(wood)
     weight = np.sqrt(field.count)
     voted = _mean_shift(field.xyz + field.offset, field.toward_foot, weight)
     density = _around(voted, field.toward_foot, LONELY_M) @ weight
     kept = density >= LEAST_VOTES
     field, voted, weight, density = field.take(kept), voted[kept], weight[kept], density[kept]
     node = _node_of(voted, field.toward_foot, density)
+    of_voxel[wood[kept]] = node
     total = np.bincount(node, weight)
 
     def mean(values: Floats) -> Floats:
@@ -97,6 +100,7 @@ def gather_votes(field: PointField) -> Threads:
         toward_foot=direction / np.maximum(np.linalg.norm(direction, axis=1), 1e-9)[:, None],
         votes=np.asarray(total, np.float64),
         scatter=np.sqrt(scatter),
+        of_voxel=of_voxel,
     )
 
 
