@@ -30,7 +30,10 @@ WHOLE = 0.95  # a tree of which less is kept was taken apart
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Points (P, 3); places (T, 3) every centimetre of what is shown of the axes, radii (T,)."""
+    """Points (P, 3); places (T, 3) every centimetre of the axes that are shown, and radii (T,).
+
+    `every` (A, 3) are the places of all axes, shown or not; `foot` (3,) the lowest.
+    """
 
     name: str
     xyz: Floats
@@ -49,8 +52,7 @@ def measured_in(folder: Path) -> list[Measured]:
 
 
 def _read(path: Path) -> Measured:
-    cloud = read_cloud(path)
-    xyz = cloud.to_input.apply(cloud.xyz)
+    xyz = read_cloud(path).xyz
     with np.load(path.with_name(path.stem.rsplit("_", 1)[0] + "_truth.npz")) as held:
         a, b, r = held["a"], held["b"], held["r"]
     edges = np.column_stack([np.arange(len(a)), np.arange(len(a)) + len(a)])

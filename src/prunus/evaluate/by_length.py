@@ -78,31 +78,40 @@ def edits_by_length(predicted: Skeleton, truth: Skeleton, counts: Bools) -> Leng
     ours = pieces_of(predicted)
     asked, rest = asked_of(truth, counts)
     near = _near(ours, asked)
-    right = near[:, _agree(ours, asked, near)]
-    pair = _paired(right, len(ours), len(asked))
-    labelled = pair != NONE
-    taken = np.zeros(len(asked), np.bool_)
-    taken[pair[labelled]] = True
-    left = near[:, ~labelled[near[0]] & ~taken[near[1]]]
-    other = _paired(left, len(ours), len(asked))
-    wrong = ~labelled & (other == NONE)
-    mislabelled = int((other != NONE).sum())
+    labelled, had, mislabelled = _matched(ours, asked, near)
     geometry = int((_paired(near, len(ours), len(asked)) != NONE).sum())
+    wrong = ~labelled & ~mislabelled
+    stray = np.intersect1d(np.flatnonzero(wrong), _near(ours, rest)[0])
+    missing = len(asked) - int(had.sum()) - int(mislabelled.sum())
+    differing = _by_label(ours.label[~labelled]) + _by_label(asked.label[~had])
     return LengthEdits(
         wrong=SPACING * int(wrong.sum()),
-        missing=SPACING * (len(asked) - int(taken.sum()) - mislabelled),
-        mislabelled=SPACING * mislabelled,
+        missing=SPACING * missing,
+        mislabelled=SPACING * int(mislabelled.sum()),
         length=SPACING * len(asked),
-        unasked=SPACING * int(np.isin(np.flatnonzero(wrong), _near(ours, rest)[0]).sum()),
+        unasked=SPACING * len(stray),
         geometry_wrong=SPACING * (len(ours) - geometry),
         geometry_missing=SPACING * (len(asked) - geometry),
-        differing={
-            label: SPACING
-            * int((ours.label[~labelled] == label).sum() + (asked.label[~taken] == label).sum())
-            for label in Label
-        },
-        lengths={label: SPACING * int((asked.label == label).sum()) for label in Label},
+        differing=dict(zip(Label, (SPACING * differing).tolist(), strict=True)),
+        lengths=dict(zip(Label, (SPACING * _by_label(asked.label)).tolist(), strict=True)),
     )
+
+
+def _matched(ours: Pieces, asked: Pieces, near: Ints) -> tuple[Bools, Bools, Bools]:
+    """Which of ours are right (S,), which of the truth is had (T,), which of ours is mislabelled.
+
+    Pairs of one label come first; what they leave is paired whatever its label.
+    """
+    size = len(ours), len(asked)
+    pair = _paired(near[:, _agree(ours, asked, near)], *size)
+    right, had = pair != NONE, np.zeros(len(asked), np.bool_)
+    had[pair[right]] = True
+    left = near[:, ~right[near[0]] & ~had[near[1]]]
+    return right, had, _paired(left, *size) != NONE
+
+
+def _by_label(labels: Ints) -> Ints:
+    return np.bincount(labels, minlength=len(Label))
 
 
 def geometry_f1(predicted: Skeleton, truth: Skeleton, counts: Bools, tolerance: float) -> float:
