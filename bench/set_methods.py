@@ -7,11 +7,15 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from prunus import skeletonize
 from prunus.errors import PrunusError
+from prunus.field.network import see_field
+from prunus.field.votes import gather_votes
+from prunus.growth.grow import grow
 from prunus.model import Bools, Floats, PointCloud, Skeleton
 from prunus.params import Parameters
 
@@ -44,20 +48,31 @@ def _skeletonized(cloud: PointCloud, base: Floats | None, params: Parameters) ->
     return Found(result.skeleton, every if result.isolated is None else result.isolated.target)
 
 
-def _grown(cloud: PointCloud, base: Floats | None) -> Skeleton:
-    skeleton: Skeleton = _imported("prunus.growth:skeleton_of")(cloud, base=base)
-    return skeleton
+def grown(field: Path) -> Method:
+    """Votes of the network in a file, and the tree that grows on them."""
+    if not field.exists():
+        sys.exit(f"bench.sets: {field}: no network of the point field; --field names one")
+
+    def method(cloud: PointCloud, base: Floats | None) -> Skeleton:
+        at = None if base is None else cloud.to_input.inverse().apply(base)
+        threads = gather_votes(see_field(cloud.xyz, field))
+        return grow(threads, at).moved(cloud.to_input)
+
+    return method
 
 
-METHODS: dict[str, Method] = {"default": _default, "paper": _paper, "grown": _grown}
+METHODS: dict[str, Callable[[Path], Method]] = {
+    "default": lambda _: _default,
+    "paper": lambda _: _paper,
+    "grown": grown,
+}
+"""By name, what makes each of the file of a field network."""
 
 
-def method_of(name: str) -> Method:
+def method_of(name: str, field: Path) -> Method:
     """A method of the table, or any `module:function` of cloud and base."""
-    if name == "grown":
-        _imported("prunus.growth:skeleton_of")
     if name in METHODS:
-        return METHODS[name]
+        return METHODS[name](field)
     if ":" not in name:
         sys.exit(
             f"bench.sets: unknown method {name!r}; expected {', '.join(METHODS)} or m:function"

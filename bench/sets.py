@@ -24,6 +24,7 @@ from bench.set_cases import SETS, Case, case_of
 from bench.set_figures import Figures, figures_of, lines_of
 from bench.set_measured import Measured, measured_figures, measured_in, measured_lines
 from bench.set_methods import METHODS, Found, Method, method_of, tried
+from prunus.field.network import SHIPPED
 from prunus.model import Floats
 
 MEASURED = "measured"
@@ -35,7 +36,7 @@ Told = Callable[[list[Figures]], dict[str, str]]
 def main() -> None:
     """Measure, and print a table a set as it is done."""
     chosen = _options()
-    methods = {name: method_of(name) for name in chosen.method}
+    methods = {name: method_of(name, chosen.field) for name in chosen.method}
     _warm(methods)
     for name in chosen.set or [*USUAL, *([MEASURED] if chosen.measured else [])]:
         if name == MEASURED:
@@ -63,6 +64,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--base", action="store_true", help="give every method the true base")
     parser.add_argument("--cache", type=Path, help="the folder in which cases are kept")
     parser.add_argument("--measured", type=Path, help="the folder of measured trees")
+    parser.add_argument("--field", type=Path, default=SHIPPED, help="the network of `grown`")
     return parser.parse_args()
 
 
