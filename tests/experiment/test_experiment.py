@@ -35,6 +35,17 @@ def test_every_way_is_tried_and_written(folder: Path) -> None:
     assert float(rows[1]["edit_ratio"]) == pytest.approx(ratio)
 
 
+def test_every_trial_has_its_edits_by_length_and_the_tables_show_them(folder: Path) -> None:
+    held = json.loads((folder / "results.json").read_text())
+    for trial in held["trials"]:
+        metres = trial["by_length"]
+        parts = metres["wrong"] + metres["missing"] + metres["mislabelled"]
+        assert metres["ratio"] == pytest.approx(parts / metres["length"])
+        assert metres["geometry_ratio"] <= metres["ratio"]
+    assert held["ways"]["default"]["by_length"]["number"] == 1
+    assert "edit ratio by length, median" in (folder / "results.md").read_text()
+
+
 def test_on_a_clean_scan_ours_needs_fewer_edits_than_the_paper(folder: Path) -> None:
     ways = json.loads((folder / "results.json").read_text())["ways"]
     assert ways["default"]["edit_ratio"]["median"] < ways["paper"]["edit_ratio"]["median"]
@@ -65,6 +76,7 @@ def test_a_trial_without_a_skeleton_counts_as_all_wrong() -> None:
     found = way_of([failed])
     assert found["failed"] == 1
     assert found["edit_ratio"]["median"] == 1.0
+    assert found["by_length"]["median"] == found["geometry_by_length"]["median"] == 1.0
 
 
 def test_the_spread_leaves_out_what_is_no_number() -> None:

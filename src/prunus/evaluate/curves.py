@@ -60,13 +60,13 @@ def _measured(name: str, found: Floats, true: Floats) -> dict[str, float]:
     return {f"{name}_recall": recall, f"{name}_precision": precision, f"{name}_f1": f1}
 
 
-def covered(points: Floats, by: Floats) -> float:
+def covered(points: Floats, by: Floats, tolerance: float = TOLERANCE) -> float:
     """Share of the points (S, 3) with one of the others within the tolerance; NaN of none."""
     if len(points) == 0:
         return float("nan")
     if len(by) == 0:
         return 0.0
-    start, _ = within(by, points, TOLERANCE)
+    start, _ = within(by, points, tolerance)
     return float((np.diff(start) > 0).mean())
 
 

@@ -12,7 +12,7 @@ from prunus.experiment.habits import habits_of
 from prunus.learn.labels import TrueWood, edge_labels
 from prunus.measure import branch_of_rows, branches, counting_rows
 from prunus.model import Bools, CandidateGraph, Floats, Label, PointCloud, Skeleton
-from prunus.simulate.scan import simulate_scan
+from prunus.simulate.scan import Scan, simulate_scan
 from prunus.simulate.settings import Setting
 
 
@@ -87,7 +87,11 @@ class Simulated:
 @lru_cache(maxsize=4)
 def tree_of(seed: int, setting: Setting = "field") -> Tree:
     """The target of the scan of that seed."""
-    scan = simulate_scan(seed, setting)
+    return target_of(simulate_scan(seed, setting), f"tree_{seed}")
+
+
+def target_of(scan: Scan, name: str) -> Tree:
+    """The target of a scan."""
     truth = scan.truth
     row = np.where(scan.truth_rows, np.cumsum(scan.truth_rows) - 1, -1)
     own = scan.tree == 0
@@ -95,7 +99,7 @@ def tree_of(seed: int, setting: Setting = "field") -> Tree:
     branch = np.where(at >= 0, branch_of_rows(branches(truth), len(truth))[at], -1)
     counts = counting_rows(truth, scan.xyz[own], branch)
     cloud = PointCloud.from_xyz(scan.xyz[own])
-    return Tree(f"tree_{seed}", cloud, truth, counts, habits_of(truth))
+    return Tree(name, cloud, truth, counts, habits_of(truth))
 
 
 @dataclass(frozen=True)

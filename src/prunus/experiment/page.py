@@ -219,6 +219,9 @@ _CELLS: dict[str, Callable[[Record], str]] = {
     "edit ratio, best to worst": lambda w: _range(
         w["edit_ratio"], w["edit_ratio"]["least"], w["edit_ratio"]["most"]
     ),
+    "edit ratio by length, median": lambda w: _number(w["by_length"]["median"]),
+    "edit ratio by length, worst": lambda w: _number(w["by_length"]["most"]),
+    "the same without labels, median": lambda w: _number(w["geometry_by_length"]["median"]),
     **{f"{label.word.replace('_', ' ')}, median": _of_label(label) for label in Label},
     "leaders found": lambda w: _percent(w["leaders_found"]),
     "leaders found, of those shown": lambda w: _percent(w["leaders_found_of_shown"]),

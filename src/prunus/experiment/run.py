@@ -18,6 +18,9 @@ from prunus.workers import in_order
 FIRST_SEED = 900_000
 """The trees of the experiment: nothing was ever trained or tuned on seeds from here on."""
 
+MEASURED = 2
+"""Grows with what is measured of a trial, so that no older record stands for a new one."""
+
 
 def run_trees(
     folder: Path, subjects: Sequence[Subject], draws: int, ablation: bool, jobs: int
@@ -72,7 +75,7 @@ def _read(path: Path) -> Record:
 
 def _made_by(draws: int, made_of: str, ablation: bool) -> str:
     """What the trials of a tree depend on, as a short word: version, parameters, weights."""
-    digest = hashlib.sha256(f"{__version__} {draws} tree {made_of}".encode())
+    digest = hashlib.sha256(f"{__version__} {MEASURED} {draws} tree {made_of}".encode())
     for way in ways(ablation):
         digest.update(f"{way.name} {way.oracle} {way.base} {way.params.to_toml()}".encode())
     for weights in sorted((Path(__file__).parents[1] / "weights").iterdir()):

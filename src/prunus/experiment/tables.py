@@ -33,6 +33,8 @@ def way_of(trials: list[Record]) -> Record:
         "trials": len(trials),
         "failed": len(trials) - len(done),
         "edit_ratio": spread(ratios),
+        "by_length": spread(_by_length(trials, "ratio")),
+        "geometry_by_length": spread(_by_length(trials, "geometry_ratio")),
         "labels": {label.word: spread(values) for label, values in by_label(done).items()},
         "leaders_found": _share(done, "branches", "leaders_found", "leaders_true"),
         "leaders_found_of_shown": _share(done, "branches_shown", "leaders_found", "leaders_true"),
@@ -63,6 +65,11 @@ def way_of(trials: list[Record]) -> Record:
 def edit_ratios(trials: list[Record]) -> list[float]:
     """The global edit ratio of each trial."""
     return [trial.get("edit_ratio", 1.0) for trial in trials]
+
+
+def _by_length(trials: list[Record], name: str) -> list[float]:
+    """A ratio by length of each trial; without a skeleton all is missing."""
+    return [trial["by_length"][name] if "by_length" in trial else 1.0 for trial in trials]
 
 
 def by_label(trials: list[Record]) -> dict[Label, list[float]]:

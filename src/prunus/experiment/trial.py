@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from prunus.evaluate.by_length import LengthEdits, edits_by_length
 from prunus.evaluate.correction import corrected
 from prunus.evaluate.curves import curve_measures
 from prunus.evaluate.edits import Edits, edits
@@ -135,12 +136,20 @@ def edited(needed: Edits) -> Record:
 
 
 def as_found(found: Skeleton, tree: Tree) -> Record:
-    """The curve and branch measures of a trial."""
+    """The edits by length, the curve and the branch measures of a trial."""
     return {
+        "by_length": by_length(edits_by_length(found, tree.truth, tree.counts)),
         "curves": without_nan(curve_measures(found, tree.truth)),
         "branches": without_nan(branch_measures(found, tree.truth)),
         "branches_shown": without_nan(branch_measures(found, shown(tree.truth, tree.counts))),
     }
+
+
+def by_length(needed: LengthEdits) -> Record:
+    """The edits by length of a trial, metres."""
+    names = ("wrong", "unasked", "missing", "mislabelled", "length")
+    metres = {name: getattr(needed, name) for name in names}
+    return without_nan({"ratio": needed.ratio, "geometry_ratio": needed.geometry_ratio, **metres})
 
 
 def score_of(skeleton: Skeleton, result: Result) -> float:

@@ -1,0 +1,102 @@
+"""The chains that are judged, by name: a cloud and perhaps a base in, a skeleton or none out."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from prunus import skeletonize
+from prunus.errors import PrunusError
+from prunus.field.network import see_field
+from prunus.field.votes import gather_votes
+from prunus.growth.grow import grow
+from prunus.model import Bools, Floats, PointCloud, Skeleton
+from prunus.params import Parameters
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A skeleton in the frame of the input, and which points (P,) were taken for the tree's.
+
+    Without `kept` nothing is known of it.
+    """
+
+    skeleton: Skeleton
+    kept: Bools | None = None
+
+
+Method = Callable[[PointCloud, Floats | None], "Skeleton | Found | None"]
+
+
+def _default(cloud: PointCloud, base: Floats | None) -> Found:
+    return _skeletonized(cloud, base, Parameters())
+
+
+def _paper(cloud: PointCloud, base: Floats | None) -> Found:
+    return _skeletonized(cloud, base, Parameters.paper())
+
+
+def _skeletonized(cloud: PointCloud, base: Floats | None, params: Parameters) -> Found:
+    result = skeletonize(cloud, base, params)
+    every = np.ones(len(cloud), np.bool_)
+    return Found(result.skeleton, every if result.isolated is None else result.isolated.target)
+
+
+def grown(field: Path) -> Method:
+    """Votes of the network in a file, and the tree that grows on them."""
+    if not field.exists():
+        sys.exit(f"bench.sets: {field}: no network of the point field; --field names one")
+
+    def method(cloud: PointCloud, base: Floats | None) -> Skeleton:
+        at = None if base is None else cloud.to_input.inverse().apply(base)
+        threads = gather_votes(see_field(cloud.xyz, field))
+        return grow(threads, at).moved(cloud.to_input)
+
+    return method
+
+
+METHODS: dict[str, Callable[[Path], Method]] = {
+    "default": lambda _: _default,
+    "paper": lambda _: _paper,
+    "grown": grown,
+}
+"""By name, what makes each of the file of a field network."""
+
+
+def method_of(name: str, field: Path) -> Method:
+    """A method of the table, or any `module:function` of cloud and base."""
+    if name in METHODS:
+        return METHODS[name](field)
+    if ":" not in name:
+        sys.exit(
+            f"bench.sets: unknown method {name!r}; expected {', '.join(METHODS)} or m:function"
+        )
+    return _imported(name)
+
+
+def _imported(name: str) -> Callable[..., Skeleton]:
+    module, _, function = name.partition(":")
+    try:
+        found: Callable[..., Skeleton] = getattr(importlib.import_module(module), function)
+    except (ImportError, AttributeError) as error:
+        sys.exit(f"bench.sets: no method {name}: {error}")
+    return found
+
+
+def tried(method: Method, xyz: Floats, base: Floats | None) -> tuple[Found | None, float]:
+    """What a method makes of points, None where it refuses them, and its CPU seconds."""
+    cloud = PointCloud.from_xyz(xyz)
+    before = time.process_time()
+    try:
+        found = method(cloud, base)
+    except PrunusError as error:
+        print(f"  refused: {error}", file=sys.stderr)
+        found = None
+    spent = time.process_time() - before
+    return (Found(found) if isinstance(found, Skeleton) else found), spent
