@@ -16,8 +16,15 @@ STEM_APART_M = 0.08
 """Parts of one stem lie so close."""
 LEAST_STEM_M = 0.06
 """A stem is at least so long."""
-LEADS_TO = 6.0
-"""A foot to which one may grow from another at this cost, metres, is wood of that tree."""
+LEAST_WOOD_M = 0.5
+"""So much wood flows to an end that may be the foot of another tree."""
+FLOWS_COS = 0.5
+"""The cosine between the direction of a node and the way to the one before it, at least."""
+AGAINST_M, STEM_AGAINST_M = 0.5, 0.15
+"""Another tree is one to whose foot every way goes so far against the flow of the wood, and one
+whose stem is in view."""
+ALIKE_M = 0.02
+"""Ways that differ by less in that are alike."""
 
 
 def find_feet(graph: ThreadGraph, given: int | None = None) -> Ints:
@@ -32,8 +39,37 @@ def find_feet(graph: ThreadGraph, given: int | None = None) -> Ints:
     found = [_low_end(threads, stem[piece == one]) for one in range(piece.max(initial=-1) + 1)]
     ends = [(-mass, node) for node, mass, length in found if length >= LEAST_STEM_M]
     feet = [node for _, node in sorted(ends)]
-    feet = feet if given is None else [given, *feet]
-    return _own_feet(graph, feet) if feet else _lowest(graph)
+    limit = [STEM_AGAINST_M] * len(feet)
+    feet += [end for end in ends_of_flow(graph) if end not in feet]
+    limit += [AGAINST_M] * (len(feet) - len(limit))
+    own = _own_feet(graph, feet, np.array(limit)) if feet else _lowest(graph)
+    return own if given is None else _with(graph, given, own)
+
+
+def ends_of_flow(graph: ThreadGraph) -> list[int]:
+    """Where wood of which enough is in view goes on unseen: the most wood first.
+
+    Every node leads to the one before it that its direction points to; where none does, the flow
+    of the wood ends. That is a foot, or where a tree comes into view whose foot is not.
+    """
+    size = len(graph.threads)
+    near = ~np.tile(graph.gap, 2)
+    outward, cost = graph.outward[near], graph.costs[near]
+    way = graph.threads.xyz[outward[:, 0]] - graph.threads.xyz[outward[:, 1]]
+    along = (way * graph.threads.toward_foot[outward[:, 1]]).sum(axis=1)
+    ahead = along > FLOWS_COS * np.linalg.norm(way, axis=1)
+    toward_foot = graph.threads.toward_foot
+    ahead &= (toward_foot[outward[:, 0]] * toward_foot[outward[:, 1]]).sum(axis=1) > -FLOWS_COS
+    outward, cost = outward[ahead], cost[ahead]
+    order = np.lexsort((-cost, outward[:, 1]))
+    before = np.arange(size)
+    before[outward[order, 1]] = outward[order, 0]  # the cheapest comes last
+    end = before
+    for _ in range(size.bit_length()):
+        end = end[end]
+    wood = np.bincount(end, np.linalg.norm(graph.threads.xyz - graph.threads.xyz[before], axis=1))
+    found = np.flatnonzero((wood >= LEAST_WOOD_M) & (before[: len(wood)] == np.arange(len(wood))))
+    return found[np.argsort(-wood[found], kind="stable")].tolist()
 
 
 def _pairs(xyz: Floats, reach: float) -> Ints:
@@ -43,16 +79,28 @@ def _pairs(xyz: Floats, reach: float) -> Ints:
     return np.asarray(cKDTree(xyz).query_pairs(reach, output_type="ndarray"), np.int64)
 
 
-def _own_feet(graph: ThreadGraph, feet: list[int]) -> Ints:
-    """Those feet that wood does not lead to from one with more stem.
+def _own_feet(graph: ThreadGraph, feet: list[int], limit: Floats) -> Ints:
+    """Those feet that wood does not lead to from another, by going against the flow less than that.
 
-    To come to the foot of another tree, a way goes down its trunk against the flow, which is dear.
+    To the foot of another tree a way goes down its trunk; to a part of the same tree it only
+    crosses a gap. Of two that lead to each other the one stays from which it is easier; the first,
+    where they are alike.
     """
-    own: list[int] = []
-    for foot in feet:
-        if not own or dijkstra(graph.matrix, indices=own, min_only=True)[foot] > LEADS_TO:
-            own.append(foot)
-    return np.array(own)
+    against = dijkstra(graph.against, indices=feet, limit=AGAINST_M)[:, feet]
+    rank = np.arange(len(feet))
+    easier = (against < against.T - ALIKE_M) | (
+        (against < against.T + ALIKE_M) & (rank[:, None] < rank)
+    )
+    led_to = ((against <= limit) & easier).any(axis=0)
+    return np.array(feet)[~led_to]
+
+
+def _with(graph: ThreadGraph, given: int, feet: Ints) -> Ints:
+    """One that was given, and the feet of the other trees: all but that of its own tree."""
+    _, _, owner = dijkstra(graph.matrix, indices=feet, min_only=True, return_predecessors=True)
+    down = dijkstra(graph.against, indices=given, limit=AGAINST_M)
+    own = (feet == owner[given]) & np.isfinite(down[feet])
+    return np.append(given, feet[~own & (feet != given)])
 
 
 def _low_end(threads: Threads, nodes: Ints) -> tuple[int, float, float]:
@@ -61,6 +109,17 @@ def _low_end(threads: Threads, nodes: Ints) -> tuple[int, float, float]:
     direction /= max(float(np.linalg.norm(direction)), 1e-9)
     along = threads.xyz[nodes] @ direction
     return int(nodes[along.argmax()]), float(threads.votes[nodes].sum()), float(np.ptp(along))
+
+
+def main_foot(threads: Threads, foot: Ints, feet: Ints) -> int:
+    """Of the trees in view that at which the scanner looks; `foot` (N,) is that of each node.
+
+    It has much wood and much stem in view, and is scanned densely, since it stands near.
+    """
+    own = foot == feet[:, None]
+    votes = own @ threads.votes
+    stem = own @ (threads.votes * threads.role[:, Role.STEM])
+    return int(feet[(stem * votes * votes / np.maximum(own.sum(axis=1), 1)).argmax()])
 
 
 def _lowest(graph: ThreadGraph) -> Ints:

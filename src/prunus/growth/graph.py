@@ -28,6 +28,8 @@ ASTRAY = 8.0
 """What a metre costs more for each unit by which its direction is off (one less the cosine)."""
 ASTRAY_IN_GAP = 8.0
 """The same across a gap, where nothing else is seen."""
+WANDERS = 0.15
+"""A direction that is off by so little goes with the flow."""
 GAP, GAP_SQUARED = 4.0, 6.0
 """What a metre of a gap costs more, and a square metre."""
 
@@ -56,13 +58,26 @@ class ThreadGraph:
         size = len(self.threads)
         return csr_array((self.costs, tuple(self.outward.T)), shape=(size, size))
 
+    @cached_property
+    def against(self) -> csr_array:
+        """How far (N, N) each of `outward` goes against the flow of wood, metres; none is 1e-9."""
+        size = len(self.threads)
+        _, length, off = _off(self.threads, self.outward)
+        metres = length * np.maximum(off - WANDERS, 0.0) / 2 + 1e-9
+        return csr_array((metres, tuple(self.outward.T)), shape=(size, size))
+
+
+def _off(threads: Threads, outward: Ints) -> tuple[Floats, Floats, Floats]:
+    """The way (E, 3) over each edge, its length, and how far off its direction is, 0 to 2."""
+    way = threads.xyz[outward[:, 1]] - threads.xyz[outward[:, 0]]
+    length = np.maximum(np.linalg.norm(way, axis=1), 1e-9)
+    off = 1 + (way * threads.toward_foot[outward[:, 1]]).sum(axis=1) / length
+    return way, length, off
+
 
 def growth_costs(threads: Threads, outward: Ints, gap: Bools) -> Floats:
     """What it costs (E,) to grow over edges (E, 2) from their first node to their second."""
-    way = threads.xyz[outward[:, 1]] - threads.xyz[outward[:, 0]]
-    length = np.maximum(np.linalg.norm(way, axis=1), 1e-9)
-    toward_foot = threads.toward_foot[outward[:, 1]]
-    off = 1 + (way * toward_foot).sum(axis=1) / length
+    _, length, off = _off(threads, outward)
     along = length * (1 + np.where(gap, ASTRAY_IN_GAP, ASTRAY) * off)
     across = np.where(gap, GAP * length + GAP_SQUARED * length**2, 0.0)
     return np.asarray(along + across)
