@@ -69,7 +69,8 @@ def ends_of_flow(graph: ThreadGraph) -> list[int]:
         end = end[end]
     wood = np.bincount(end, np.linalg.norm(graph.threads.xyz - graph.threads.xyz[before], axis=1))
     found = np.flatnonzero((wood >= LEAST_WOOD_M) & (before[: len(wood)] == np.arange(len(wood))))
-    return found[np.argsort(-wood[found], kind="stable")].tolist()
+    order = np.argsort(-wood[found], kind="stable")
+    return [int(end) for end in found[order]]
 
 
 def _pairs(xyz: Floats, reach: float) -> Ints:
@@ -92,7 +93,7 @@ def _own_feet(graph: ThreadGraph, feet: list[int], limit: Floats) -> Ints:
         (against < against.T + ALIKE_M) & (rank[:, None] < rank)
     )
     led_to = ((against <= limit) & easier).any(axis=0)
-    return np.array(feet)[~led_to]
+    return np.asarray(np.array(feet)[~led_to], np.int64)
 
 
 def _with(graph: ThreadGraph, given: int, feet: Ints) -> Ints:
@@ -117,9 +118,11 @@ def main_foot(threads: Threads, foot: Ints, feet: Ints) -> int:
     It has much wood and much stem in view, and is scanned densely, since it stands near.
     """
     own = foot == feet[:, None]
-    votes = own @ threads.votes
-    stem = own @ (threads.votes * threads.role[:, Role.STEM])
-    return int(feet[(stem * votes * votes / np.maximum(own.sum(axis=1), 1)).argmax()])
+    voxels = np.bincount(threads.of_voxel[threads.of_voxel >= 0], minlength=len(threads))
+    points = threads.votes**2 / np.maximum(voxels, 1)
+    stem, wood = own @ (points * threads.role[:, Role.STEM]), own @ points
+    dense = wood / np.maximum(own @ voxels, 1)
+    return int(feet[(stem * wood * dense).argmax()])
 
 
 def _lowest(graph: ThreadGraph) -> Ints:
