@@ -15,6 +15,7 @@ from prunus import skeletonize
 from prunus.errors import PrunusError
 from prunus.field.network import see_field
 from prunus.field.votes import gather_votes
+from prunus.field.voxels import voxels_of
 from prunus.growth.grow import grow
 from prunus.model import Bools, Floats, PointCloud, Skeleton
 from prunus.params import Parameters
@@ -55,7 +56,7 @@ def grown(field: Path) -> Method:
 
     def method(cloud: PointCloud, base: Floats | None) -> Skeleton:
         at = None if base is None else cloud.to_input.inverse().apply(base)
-        threads = gather_votes(see_field(cloud.xyz, field))
+        threads = gather_votes(see_field(voxels_of(cloud.xyz), field))
         return grow(threads, at).moved(cloud.to_input)
 
     return method

@@ -51,8 +51,8 @@ def test_children_and_parents_agree(cloud):
 
 def test_moving_the_cloud_by_whole_voxels_changes_no_feature(cloud):
     here, there = voxels_of(cloud), voxels_of(cloud + VOXEL_M * np.array([64, -32, 0]))
-    assert here.features(0, 1).shape == (len(here.xyz), FEATURES)
-    assert there.features(0, 1) == pytest.approx(here.features(0, 1), abs=1e-4)
+    assert here.features().shape == (len(here.xyz), FEATURES)
+    assert there.features() == pytest.approx(here.features(), abs=1e-4)
 
 
 def test_one_point_is_one_voxel():

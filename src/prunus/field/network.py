@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from prunus.field.votes import PointField
-from prunus.field.voxels import LEVELS, Voxels, heights_of, voxels_of
+from prunus.field.voxels import LEVELS, Voxels
 from prunus.model import Floats, Role
 from prunus.networks import WEIGHTS, open_network
 
@@ -26,15 +26,14 @@ TABLES = [f"neighbours_{level}" for level in range(LEVELS)] + [
 SHOWN, TOLD = frozenset({"features", *TABLES}), frozenset({"outputs"})
 
 
-def see_field(xyz: Floats, path: Path = SHIPPED) -> PointField:
-    """What the network says of points (P, 3), Z up, metres: the same for the same points.
+def see_field(voxels: Voxels, path: Path = SHIPPED) -> PointField:
+    """What the network says of the voxels of a cloud, Z up: the same for the same voxels.
 
     PrunusError where the file holds no such network.
     """
-    voxels = voxels_of(xyz)
     session = open_network(path, (SHOWN,), TOLD)
-    features = voxels.features(*heights_of(xyz))
-    (outputs,) = session.run(["outputs"], {"features": features, **tables_of(voxels)})
+    shown = {"features": voxels.features(), **tables_of(voxels)}
+    (outputs,) = session.run(["outputs"], shown)
     return field_of(voxels, np.asarray(outputs, np.float64))
 
 

@@ -40,7 +40,8 @@ class Voxels:
     """The occupied voxels of a cloud, as `cells` (V, 3).
 
     xyz (V, 3): the mean of the points of each; count (V,): how many; spread (V, 6): their
-    covariance, in voxels; of_point (P,): the voxel of each point.
+    covariance, in voxels; of_point (P,): the voxel of each point; ground, top: the heights between
+    which the points lie, metres.
     """
 
     cells: Ints
@@ -50,6 +51,15 @@ class Voxels:
     spread: Floats
     corner: Floats
     size: float
+    ground: float
+    top: float
+
+    def holding(self, xyz: Floats) -> Ints:
+        """The row (P,) of the voxel that holds each of other points (P, 3), -1 = none does."""
+        keys = _keys(self.cells)
+        wanted = _keys(np.floor((xyz - self.corner) / self.size).astype(np.int64))
+        at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+        return np.where(keys[at] == wanted, at, -1)
 
     @cached_property
     def levels(self) -> tuple[Level, ...]:
@@ -60,15 +70,16 @@ class Voxels:
             found.append(level)
         return tuple(found)
 
-    def features(self, ground: float, top: float) -> Floats:
+    def features(self, off: float = 0.0) -> Floats:
         """What the network sees of each voxel (V, `FEATURES`), single precision.
 
         Where the mean of its points lies in it (3), their covariance (6), how many there are, the
-        height over `ground`, metres, and as a share of that of `top`.
+        height over the ground, metres, and as a share of that of the top. In training the ground
+        is `off`, metres.
         """
         inside = (self.xyz - self.corner) / self.size - self.cells - 0.5
-        height = self.xyz[:, 2] - ground
-        share = height / max(top - ground, self.size)
+        height = self.xyz[:, 2] - self.ground - off
+        share = height / max(self.top - self.ground - off, self.size)
         columns = [inside, self.spread, np.log1p(self.count) / 3, height, share]
         columns.append(np.ones(len(height)))
         return np.column_stack(columns).astype(np.float32)
@@ -85,6 +96,7 @@ def voxels_of(xyz: Floats, size: float = VOXEL_M, shift: Floats | None = None) -
     off = (xyz - mean[of_point]) / size
     products = np.column_stack([off[:, i] * off[:, j] for i in range(3) for j in range(i, 3)])
     spread = _sums(products, of_point, len(keys)) / count[:, None]
+    ground, top = heights_of(xyz)
     return Voxels(
         cells=cell[first],
         xyz=mean,
@@ -93,6 +105,8 @@ def voxels_of(xyz: Floats, size: float = VOXEL_M, shift: Floats | None = None) -
         spread=spread,
         corner=corner,
         size=size,
+        ground=ground,
+        top=top,
     )
 
 

@@ -27,6 +27,12 @@ ALIKE_M = 0.02
 """Ways that differ by less in that are alike."""
 
 
+ASIDE_M = 0.5
+"""A tree that stands so far from the middle of the view is half as likely to be meant."""
+UNSEEN_STEM = 0.05
+"""The share of its wood that a tree has as stem where none is in view."""
+
+
 def find_feet(graph: ThreadGraph, given: int | None = None) -> Ints:
     """The nodes (F,) where trees stand, those with most stem first; the lowest end where none is.
 
@@ -115,14 +121,18 @@ def _low_end(threads: Threads, nodes: Ints) -> tuple[int, float, float]:
 def main_foot(threads: Threads, foot: Ints, feet: Ints) -> int:
     """Of the trees in view that at which the scanner looks; `foot` (N,) is that of each node.
 
-    It has much wood and much stem in view, and is scanned densely, since it stands near.
+    It stands in the middle, it has much wood and stem in view, and is scanned densely, since it is
+    near.
     """
     own = foot == feet[:, None]
     voxels = np.bincount(threads.of_voxel[threads.of_voxel >= 0], minlength=len(threads))
     points = threads.votes**2 / np.maximum(voxels, 1)
     stem, wood = own @ (points * threads.role[:, Role.STEM]), own @ points
     dense = wood / np.maximum(own @ voxels, 1)
-    return int(feet[(stem * wood * dense).argmax()])
+    middle = np.ptp(threads.xyz[:, 0]) / 2 + threads.xyz[:, 0].min()
+    aside = (threads.xyz[feet, 0] - middle) / ASIDE_M
+    seen = (stem + UNSEEN_STEM * wood) * wood * dense
+    return int(feet[(seen / (1 + aside**2)).argmax()])
 
 
 def _lowest(graph: ThreadGraph) -> Ints:

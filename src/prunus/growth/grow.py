@@ -1,25 +1,61 @@
-"""From threads to a tree: graph, feet, ways, branches, parents and labels."""
+"""From threads to trees: graph, feet, ways, branches, parents and labels."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
 
 from prunus.field.votes import Threads
 from prunus.growth.branches import cut_branches
 from prunus.growth.feet import find_feet, main_foot, nearest_foot
-from prunus.growth.graph import join_threads
+from prunus.growth.graph import ThreadGraph, join_threads
 from prunus.growth.parents import choose_parents
-from prunus.growth.ways import find_ways
-from prunus.model import Floats, Skeleton
+from prunus.growth.ways import Ways, find_ways
+from prunus.model import Floats, Ints, Skeleton
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Orchard:
+    """All trees in view: each node of the threads grows from the foot that is nearest by cost.
+
+    feet (F,) are nodes; `main` is that of the tree that is meant.
+    """
+
+    graph: ThreadGraph
+    feet: Ints
+    ways: Ways
+    main: int
+
+    @classmethod
+    def of(cls, threads: Threads, base: Floats | None = None) -> Orchard:
+        """The trees of some threads; meant is that at `base` (3,), or at which the scanner looks.
+
+        Threads hold one node at least.
+        """
+        graph = join_threads(threads)
+        feet = find_feet(graph, None if base is None else nearest_foot(threads, base))
+        ways = find_ways(graph, feet)
+        main = main_foot(threads, ways.foot, feet) if base is None else int(feet[0])
+        return cls(graph=graph, feet=feet, ways=ways, main=main)
+
+    def tree_at(self, foot: int) -> Skeleton:
+        """The labelled tree that grows from a foot."""
+        threads = self.graph.threads
+        grown, told = choose_parents(threads, cut_branches(threads, self.ways, foot))
+        nodes = grown.nodes
+        return Skeleton.build(
+            threads.xyz[nodes], grown.parent, told.label,
+            radius=threads.radius[nodes], superpoint=nodes,
+        )  # fmt: skip
+
+    def foot_of_voxel(self) -> Ints:
+        """The foot (V,) of the tree that each voxel of the field is wood of; -1 = of none."""
+        of_voxel = self.graph.threads.of_voxel
+        return np.where(of_voxel >= 0, self.ways.foot[of_voxel], -1)
 
 
 def grow(threads: Threads, base: Floats | None = None) -> Skeleton:
     """The tree of some threads: of that at `base` (3,), or of that at which the scanner looks."""
-    graph = join_threads(threads)
-    feet = find_feet(graph, None if base is None else nearest_foot(threads, base))
-    ways = find_ways(graph, feet)
-    foot = main_foot(threads, ways.foot, feet) if base is None else int(feet[0])
-    grown = cut_branches(threads, ways, foot)
-    grown, told = choose_parents(threads, grown)
-    nodes = grown.nodes
-    return Skeleton.build(
-        threads.xyz[nodes], grown.parent, told.label, radius=threads.radius[nodes], superpoint=nodes
-    )
+    orchard = Orchard.of(threads, base)
+    return orchard.tree_at(orchard.main)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from prunus.field.voxels import Voxels, heights_of, voxels_of
+from prunus.field.voxels import Voxels, voxels_of
 from prunus.io.arrays import read_arrays, write_arrays
 from prunus.lab.simulate.points import PointTruth, point_truth
 from prunus.model import Bools, Floats, Ints, Kind, Role
@@ -139,10 +139,7 @@ def lesson_of(example: FieldExample, rng: np.random.Generator | None = None) -> 
 
     role = np.full(len(weight), int(Role.NO_WOOD))
     role[voxel] = example.truth.role[chosen]
-    ground, top = heights_of(example.xyz)
-    if rng is not None:
-        ground += rng.normal(0, GROUND_M)
-    features = voxels.features(ground, top)
+    features = voxels.features(0.0 if rng is None else rng.normal(0, GROUND_M))
     return Lesson(
         voxels=voxels,
         features=features,

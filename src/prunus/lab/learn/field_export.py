@@ -33,7 +33,7 @@ def field_onnx(net: FieldNet, example: Voxels) -> bytes:
     tables = Tables.of(example.levels)
     pairs = zip(tables.parent, tables.children, strict=True)
     shown = (
-        torch.from_numpy(example.features(0.0, 1.0)),
+        torch.from_numpy(example.features()),
         *tables.neighbours,
         *(table for pair in pairs for table in pair),
     )
