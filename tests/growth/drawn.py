@@ -43,6 +43,7 @@ def threads_of(pieces: list[Piece], seed: int | None = None) -> Threads:
         toward_foot=np.concatenate(toward_foot),
         votes=np.full(len(role), 5.0),
         scatter=np.zeros(len(role)),
+        beyond=np.zeros((len(role), 2)),
         of_voxel=np.arange(len(role)),
     )
 

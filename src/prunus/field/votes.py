@@ -57,7 +57,8 @@ class Threads:
 
     xyz (N, 3); role (N, 6), probabilities; radius (N,), metres; toward_foot (N, 3), unit; votes
     (N,), the root of the points of each voxel, summed; scatter (N,), how far its votes lie from
-    it, metres; of_voxel (V,), the node for which each voxel of the field voted, -1 = none.
+    it, metres; beyond (N, 2), how far the voxels that voted for it lie outward of it and toward the
+    foot, metres; of_voxel (V,), the node for which each voxel of the field voted, -1 = none.
     """
 
     xyz: Floats
@@ -66,6 +67,7 @@ class Threads:
     toward_foot: Floats
     votes: Floats
     scatter: Floats
+    beyond: Floats
     of_voxel: Ints
 
     def __len__(self) -> int:
@@ -92,14 +94,19 @@ def gather_votes(field: PointField) -> Threads:
     xyz = mean(voted)
     role = np.exp(mean(np.log(np.maximum(field.role, LEAST_CHANCE))))
     direction = mean(field.toward_foot)
+    toward_foot = direction / np.maximum(np.linalg.norm(direction, axis=1), 1e-9)[:, None]
+    along = ((field.xyz - xyz[node]) * toward_foot[node]).sum(axis=1)
+    beyond = np.zeros((len(xyz), 2))
+    np.maximum.at(beyond, node, np.column_stack([-along, along]))
     scatter = mean(((voted - xyz[node]) ** 2).sum(axis=1, keepdims=True))[:, 0]
     return Threads(
         xyz=xyz,
         role=role / role.sum(axis=1, keepdims=True),
         radius=mean(field.radius[:, None])[:, 0],
-        toward_foot=direction / np.maximum(np.linalg.norm(direction, axis=1), 1e-9)[:, None],
+        toward_foot=toward_foot,
         votes=np.asarray(total, np.float64),
         scatter=np.sqrt(scatter),
+        beyond=beyond,
         of_voxel=of_voxel,
     )
 

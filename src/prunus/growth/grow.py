@@ -7,12 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from prunus.field.votes import Threads
-from prunus.growth.branches import cut_branches
+from prunus.growth.branches import Grown, cut_branches
 from prunus.growth.feet import find_feet, main_foot, nearest_foot
 from prunus.growth.graph import ThreadGraph, join_threads
 from prunus.growth.parents import choose_parents
 from prunus.growth.ways import Ways, find_ways
 from prunus.model import Floats, Ints, Skeleton
+
+MOST_M = 0.05
+"""An end is moved by so much at most."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -45,7 +48,7 @@ class Orchard:
         grown, told = choose_parents(threads, cut_branches(threads, self.ways, foot))
         nodes = grown.nodes
         return Skeleton.build(
-            threads.xyz[nodes], grown.parent, told.label,
+            _to_the_ends(threads, grown), grown.parent, told.label,
             radius=threads.radius[nodes], superpoint=nodes,
         )  # fmt: skip
 
@@ -53,6 +56,19 @@ class Orchard:
         """The foot (V,) of the tree that each voxel of the field is wood of; -1 = of none."""
         of_voxel = self.graph.threads.of_voxel
         return np.where(of_voxel >= 0, self.ways.foot[of_voxel], -1)
+
+
+def _to_the_ends(threads: Threads, grown: Grown) -> Floats:
+    """The places (M, 3) of the nodes of a tree, its tips and its foot where the wood ends.
+
+    Votes at an end lie inside of it: each is the mean of those around.
+    """
+    nodes = grown.nodes
+    xyz, beyond = threads.xyz[nodes], np.minimum(threads.beyond[nodes], MOST_M)
+    tips = np.setdiff1d(np.arange(1, len(nodes)), grown.parent)
+    xyz[tips] -= beyond[tips, :1] * threads.toward_foot[nodes[tips]]
+    xyz[0] += beyond[0, 1] * threads.toward_foot[nodes[0]]
+    return np.asarray(xyz)
 
 
 def grow(threads: Threads, base: Floats | None = None) -> Skeleton:
