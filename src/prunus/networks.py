@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from prunus.errors import PrunusError
+from prunus.reading import read_bytes
 
 WEIGHTS = Path(__file__).parent / "weights"
 """Where the networks lie that the package ships."""
@@ -26,12 +27,9 @@ def open_network(path: Path, inputs: tuple[frozenset[str], ...], outputs: frozen
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     options.log_severity_level = 4
+    content = read_bytes(path)
     try:
-        session = onnxruntime.InferenceSession(
-            path.read_bytes(), options, providers=["CPUExecutionProvider"]
-        )
-    except OSError as error:
-        raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
+        session = onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
     except Exception as error:
         # the errors of onnxruntime share no class, and a damaged file may raise any of them
         raise PrunusError(f"{path}: not an ONNX file ({type(error).__name__})") from error

@@ -165,7 +165,8 @@ def test_links_that_lead_nowhere_are_inputs_that_fail(tmp_path: Path) -> None:
 def test_what_is_no_file_is_no_input(tmp_path: Path) -> None:
     touched(tmp_path, "tree.ply")
     (tmp_path / "folder.ply").mkdir()
-    os.mkfifo(tmp_path / "pipe.ply")
+    for name in ("pipe.ply", "pipe.txt", "metadata.yaml"):
+        os.mkfifo(tmp_path / name)
     assert clouds_in(tmp_path) == [tmp_path / "tree.ply"]
 
 

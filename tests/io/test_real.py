@@ -144,13 +144,19 @@ def test_fine_coordinates_have_no_note(tmp_path: Path, xyz: np.ndarray) -> None:
 
 
 @pytest.mark.parametrize(
-    ("xyz", "step"), [(np.round(XYZ + UTM, 2), "0.01"), (np.round(XYZ, 1), "0.1")]
+    ("xyz", "step"),
+    [
+        (np.round(XYZ + UTM, 2), "0.01"),
+        (np.round(XYZ, 1), "0.1"),
+        (np.round(XYZ / 0.04) * 0.04 + 0.017, "0.04"),
+    ],
 )
 def test_few_digits_are_said_to_be_that(tmp_path: Path, xyz: np.ndarray, step: str) -> None:
     cloud = noted(tmp_path, xyz)
     assert isinstance(cloud, FileCloud)
     assert cloud.notes == [
-        f"the coordinates come in steps of {step} m: they are written with few digits"
+        f"the coordinates come in steps of {step} m: they were rounded, or are written with few "
+        "digits"
     ]
 
 

@@ -1,5 +1,6 @@
 """The shipped networks: what must not change their scores, and what they refuse."""
 
+import os
 from functools import cache
 from pathlib import Path
 
@@ -106,7 +107,7 @@ def other_network(inputs: dict[str, tuple[int, list[object]]], outputs: list[str
 ASKED = {"image": (1, ["E", 16, 32]), "description": (1, ["E", 4])}
 OTHERS = {
     "text": (lambda: b"not a network", "not an ONNX file"),
-    "nothing": (lambda: b"", "not an ONNX file"),
+    "nothing": (lambda: b"", "the file is empty"),
     "json": (lambda: b'{"K": 1}', "not an ONNX file"),
     "cut off": (lambda: SHIPPED.read_bytes()[:-2000], "not an ONNX file"),
     "half": (lambda: SHIPPED.read_bytes()[: len(SHIPPED.read_bytes()) // 2], "not an ONNX file"),
@@ -145,6 +146,13 @@ def test_a_missing_file_or_a_folder_is_refused(tmp_path: Path) -> None:
             NetworkScorer(path)(graph())
     with pytest.raises(PrunusError, match="network: 5; expected the name of an ONNX file"):
         NetworkScorer(5)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.onnx")
+    with pytest.raises(PrunusError, match=r"pipe.onnx: a pipe or a device; expected a file"):
+        NetworkScorer(tmp_path / "pipe.onnx").check()
 
 
 def test_own_weights_may_be_named_by_text() -> None:

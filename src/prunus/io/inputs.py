@@ -11,6 +11,7 @@ from pathlib import Path
 from prunus.errors import PrunusError
 from prunus.io.readers import READERS
 from prunus.io.text import may_be_cloud
+from prunus.reading import read_bytes
 
 BAGS = (".bag", ".mcap", ".db3")
 """Endings of recordings: ROS 1, and the two stores of ROS 2."""
@@ -66,11 +67,10 @@ def source_of(path: Path) -> Source:
 
 def is_bag(path: Path) -> bool:
     """Whether a path is that of a recording: by its ending, or a folder with ROS 2's metadata."""
-    with suppress(OSError):
+    with suppress(OSError, PrunusError):
         if not path.is_dir():
             return path.suffix.lower() in BAGS
-        with (path / "metadata.yaml").open("rb") as file:
-            return b"rosbag2_bagfile_information" in file.read(4096)
+        return b"rosbag2_bagfile_information" in read_bytes(path / "metadata.yaml")
     return False
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from prunus.errors import PrunusError
 from prunus.io.columns import Content
 from prunus.model.arrays import Floats
+from prunus.model.steps import step_of
 
 BULK = 3
 """So many points exactly at the origin are what sensors write where they saw nothing."""
@@ -22,8 +23,6 @@ NOTED_STEP_M = 0.001
 """Larger steps between coordinates are said."""
 SPOILED_STEP_M = 0.01
 """Larger steps of single precision are refused: twigs of one become rows of points."""
-FEWEST = 50
-"""Points from which steps can be told."""
 
 
 def only_real(found: Content, path: Path) -> Content:
@@ -62,40 +61,16 @@ def check_steps(xyz: Floats, metres: float, path: Path) -> list[str]:
     PrunusError where single precision could not hold them: its steps grow with the distance from
     the origin, to half a metre in the northings of UTM, whatever the file says they are now.
     """
-    if len(xyz) < FEWEST:
-        return []
-    some = xyz[:: max(1, len(xyz) // 20_000)]
-    steps = [_step(some[:, axis]) for axis in range(3)]
-    step, single = max(steps)
+    step, single = max(map(step_of, xyz.T), default=(0.0, False))
     size = step * metres
     if size <= NOTED_STEP_M * 1.001:
         return []
     text = f"the coordinates come in steps of {size:.3g} m"
     if not single:
-        return [f"{text}: they are written with few digits"]
+        return [f"{text}: they were rounded, or are written with few digits"]
     if size <= SPOILED_STEP_M:
         return [f"{text}: single precision"]
     raise PrunusError(
         f"{path}: {text}: single precision cannot hold numbers as large as "
         f"{np.abs(xyz).max():.0f}; expected double precision, or coordinates from a nearer origin"
     )
-
-
-def _step(values: Floats) -> tuple[float, bool]:
-    """The step in which numbers (P,) come, and whether it is that of single precision; else 0.
-
-    They may have been rounded again on their way through text, and a few may be of another kind.
-    """
-    low = float(np.quantile(np.abs(values), 0.01))
-    if values.min() == values.max():
-        return 0.0, False
-    single = float(np.spacing(np.float32(low)))
-    for step in (1.0, 0.1, 0.01, 0.001):
-        if step > single and _on_grid(values, step):
-            return step, False
-    return (single, True) if _on_grid(values, single) else (0.0, False)
-
-
-def _on_grid(values: Floats, step: float) -> bool:
-    counts = values / step
-    return bool(np.mean(np.abs(counts - np.round(counts)) < 0.1) > 0.98)

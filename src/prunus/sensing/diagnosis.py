@@ -10,6 +10,7 @@ import numpy as np
 from prunus.errors import NoTreeError
 from prunus.kernels.neighbours import within
 from prunus.model import FRAMES, Floats, PointCloud
+from prunus.model.steps import step_of
 from prunus.sensing.orient import local_wood
 from prunus.sensing.patches import Cells
 from prunus.sensing.stance import seems
@@ -24,8 +25,6 @@ LINE_M, PLANE_M = 0.002, 0.010
 """Points on a line, and in a plane, are so near to it (root mean square)."""
 STEP_M = 0.02
 """Coordinates in such steps hardly show a branch."""
-FEW, EVEN = 3, 0.01
-"""Of fewer differences no step is told; they are whole steps but for so much of one."""
 SPARSE_M = 0.02
 """Points so far from each other cannot either."""
 PLACES = 200
@@ -101,8 +100,7 @@ def _lying(cloud: PointCloud, xyz: Floats) -> str:
 
 
 def _no_branches(cloud: PointCloud, xyz: Floats) -> str:
-    linear = local_wood(Cells.of(xyz)).linear
-    if len(linear) and linear.mean() > LINEAR:
+    if linear_wood(xyz) > LINEAR:
         return ""
     return f"hardly anything in it is like a branch: {TRY}"
 
@@ -118,16 +116,7 @@ def coarseness(cloud: PointCloud) -> float:
 
     In the frame of the file: steps of levelled coordinates are none.
     """
-    some = cloud.to_input.apply(cloud.xyz[:: max(1, len(cloud) // LOOKED_AT)])
-    return max(_step(values) for values in some.T)
-
-
-def _step(values: Floats) -> float:
-    apart = np.diff(np.unique(np.round(values, 4)))
-    if len(apart) < FEW:
-        return 0.0
-    count = apart / apart.min()
-    return float(apart.min()) if np.abs(count - np.rint(count)).max() < EVEN else 0.0
+    return max(step_of(values)[0] for values in cloud.to_input.apply(cloud.xyz).T)
 
 
 def coarse_words(step: float) -> str:
@@ -142,6 +131,12 @@ def spread(xyz: Floats) -> Floats:
     """How far points (P, 3) spread along their axes (3,), the least first: root mean squares."""
     away = xyz - xyz.mean(axis=0)
     return np.asarray(np.sqrt(np.linalg.eigvalsh(away.T @ away / len(xyz)).clip(0)))
+
+
+def linear_wood(xyz: Floats) -> float:
+    """How much the mean piece of wood in points (P, 3) is a line, 0 to 1; 0 where all is flat."""
+    linear = local_wood(Cells.of(xyz)).linear
+    return float(linear.mean()) if len(linear) else 0.0
 
 
 def spacing(xyz: Floats) -> float:

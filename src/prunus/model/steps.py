@@ -1,0 +1,53 @@
+"""How finely numbers are told: the step in which the coordinates of a cloud come."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from prunus.model.arrays import Floats
+
+LOOKED_AT = 20_000
+"""Of so many numbers."""
+FEWEST = 50
+"""Of fewer no step can be told."""
+DECIMAL = (1.0, 0.1, 0.01, 0.001)
+"""Steps of what was written with few digits."""
+DIGITS = 4
+"""Numbers that are the same to so many digits are one."""
+APART = 3
+"""Of fewer differences only the step of single precision is told, which is known beforehand."""
+OFF, MOST_ON = 0.1, 0.98
+"""On a grid lies what is off by less of its step; so many numbers do, as a few may be of another
+kind."""
+
+
+def step_of(values: Floats) -> tuple[float, bool]:
+    """The largest step in which numbers (P,) come, 0 where in none; whether single precision's is.
+
+    They may have been rounded again on their way through text.
+    """
+    values = values[:: -(-len(values) // LOOKED_AT) or 1]
+    if len(values) < FEWEST or values.min() == values.max():
+        return 0.0, False
+    single = float(np.spacing(np.float32(np.quantile(np.abs(values), 0.01))))
+    steps = [(step, False) for step in _rounded(values) if step > single]
+    if _on_grid(values, single):
+        steps.append((single, True))
+    return max(steps, default=(0.0, False))
+
+
+def _rounded(values: Floats) -> list[float]:
+    """Steps in which numbers come that somebody rounded: few digits, or places of a raster."""
+    apart = np.diff(np.unique(np.round(values, DIGITS)))
+    if len(apart) < APART:
+        return []
+    steps = [step for step in DECIMAL if _on_grid(values, step)]
+    least = float(apart.min())
+    if least >= DECIMAL[-1] and _on_grid(values - values.min(), least):
+        steps.append(least)
+    return steps
+
+
+def _on_grid(values: Floats, step: float) -> bool:
+    counts = values / step
+    return bool(np.mean(np.abs(counts - np.round(counts)) < OFF) > MOST_ON)
