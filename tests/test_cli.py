@@ -116,6 +116,33 @@ def test_the_same_run_gives_the_same_bytes(scan: Path, quick: Path, tmp_path: Pa
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
 
 
+def test_what_an_older_run_wrote_is_not_left_beside_another_tree(
+    scan: Path, quick: Path, tmp_path: Path
+) -> None:
+    out, by_hand = tmp_path / "out", {"corrected.json", "journal.jsonl", "mine.txt"}
+    words = ["skeletonize", scan, "-o", out, "--params", quick, "--frame", "z-up"]
+    assert prunus(*words, "--traits").exit_code == 0
+    assert prunus("cuts", out / "skeleton.json", "-o", out / "plan.json").exit_code == 0
+    for name in by_hand:
+        (out / name).write_text("of a person")
+    assert prunus(*words).exit_code == 0
+    same_tree = {path.name for path in out.iterdir()}
+    assert same_tree == OUTPUTS | by_hand | {"plan.json"}
+    assert prunus(*words, "--no-report", "--seed", 1).exit_code == 0
+    assert {path.name for path in out.iterdir()} == OUTPUTS - {"report.html"} | by_hand
+
+
+def test_the_plan_of_a_corrected_tree_stays(scan: Path, quick: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    write_skeleton(tmp_path / "corrected.json", tree())
+    out.mkdir()
+    planned = prunus("cuts", tmp_path / "corrected.json", "-o", out / "plan.json")
+    assert planned.exit_code == 0, planned.output
+    for _ in range(2):
+        done = prunus("skeletonize", scan, "-o", out, "--params", quick, *FAST)
+        assert done.exit_code == 0 and (out / "plan.json").exists()
+
+
 def test_json_prints_one_line_a_tree_and_nothing_else(
     scan: Path, quick: Path, tmp_path: Path
 ) -> None:
@@ -451,7 +478,10 @@ def test_trees_are_listed_and_chosen_and_all_written(raw: Path, tmp_path: Path) 
     at = listed[1].split("--at ")[1].split()[:3]
     done = prunus("isolate", raw, "-o", tmp_path / "b.ply", "--at", *at)
     assert done.exit_code == 0
-    assert prunus("isolate", raw, "-o", tmp_path / "t.ply", "--all").exit_code == 0
+    older = tmp_path / f"t_{len(listed) + 1}.ply"
+    older.write_bytes(b"of another scan")
+    done = prunus("isolate", raw, "-o", tmp_path / "t.ply", "--all")
+    assert done.exit_code == 0 and done.stdout.splitlines()[-1].startswith(f"{older}: was there")
     second = read_cloud(tmp_path / "t_2.ply").xyz
     chosen = {tuple(point) for point in read_cloud(tmp_path / "b.ply").xyz.tolist()}
     assert np.mean([tuple(point) in chosen for point in second.tolist()]) > 0.95

@@ -17,7 +17,8 @@ from prunus.io.inputs import clouds_in, is_one, names_of
 from prunus.io.names import named_branches
 from prunus.io.records import EdgesByLabel, TreeRecord
 from prunus.io.safely import write_bytes, written_together
-from prunus.io.skeletons import sha256_of, write_skeleton
+from prunus.io.plans import read_plan
+from prunus.io.skeletons import read_skeleton, sha256_of, write_skeleton
 from prunus.io.swc import write_swc
 from prunus.io.tables import csv_bytes, parquet_bytes, without_nan
 from prunus.io.trust import trust_record
@@ -157,13 +158,35 @@ def scorer_of(options: Options) -> EdgeScorer:
     return NetworkScorer.shipped(options.params.confidence.edge_net)
 
 
+SOMETIMES = (
+    "report.html",
+    "traits.csv",
+    "traits.parquet",
+    "tree_traits.csv",
+    "tree_traits.parquet",
+)
+"""What only some runs write: that of an older run goes, or it would be taken for the new tree's."""
+PLAN = "plan.json"
+
+
 def write_all(folder: Path, result: Result, scan: Scan, options: Options) -> list[str]:
     """The folder of a tree, skeleton.json last: where it is, all is. Notes on what is missing."""
     if folder.exists() and not folder.is_dir():
         raise PrunusError(f"{folder}: is a file; expected a folder to write to")
-    with written_together(folder, "skeleton.json") as together:
+    older = [*SOMETIMES, *plan_of_older(folder, result)]
+    with written_together(folder, "skeleton.json", older) as together:
         write_outputs(together, result, scan, options.report)
         return write_traits(together, result, scan.file.name) if options.traits else []
+
+
+def plan_of_older(folder: Path, result: Result) -> list[str]:
+    """plan.json, where it is of the skeleton that stands in the folder, and the new is another."""
+    try:
+        planned = read_plan(folder / PLAN).skeleton_sha256
+        replaced = planned == sha256_of(read_skeleton(folder / "skeleton.json"))
+    except PrunusError:  # there is no plan, or none of a skeleton of ours
+        return []
+    return [PLAN] if replaced and planned != sha256_of(result.skeleton) else []
 
 
 def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> None:

@@ -117,7 +117,7 @@ FrameOfFile = Annotated[
 ]
 UnitOfFile = Annotated[
     Unit | None,
-    typer.Option("--unit", help="Unit of the file. [default: what its header tells, else m]"),
+    typer.Option("--unit", help="Unit of the file. [default: its header's, else m]"),
 ]
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of all that is random.")]
 Points = Annotated[

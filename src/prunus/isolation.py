@@ -81,12 +81,19 @@ def write_tree(
 
 def write_all(opened: Opened, output: Path, classes: bool) -> list[str]:
     """Write every tree in view as OUTPUT_1, OUTPUT_2, ...; what to say of them."""
-    lines = []
-    for number, isolated in enumerate(opened.trees(), 1):
-        path = output.with_stem(f"{output.stem}_{number}")
+    lines, trees = [], opened.trees()
+    for number, isolated in enumerate(trees, 1):
+        path = _numbered(output, number)
         _write(path, opened.scan.file, isolated, classes)
         lines.append(f"{path}: {isolated.target.sum()} points; {_standing(opened, isolated)}")
+    older = _numbered(output, len(trees) + 1)
+    if older.exists():
+        lines.append(f"{older}: was there before; it is no tree of this scan")
     return [*opened.scan.notes, *lines]
+
+
+def _numbered(output: Path, number: int) -> Path:
+    return output.with_stem(f"{output.stem}_{number}")
 
 
 def list_trees(opened: Opened) -> list[str]:

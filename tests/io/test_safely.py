@@ -114,6 +114,16 @@ def test_a_run_that_fails_leaves_no_folder_that_looks_whole(
     assert everything_in(tmp_path) == ({"whole.json": b"old"} if "written" in where else {})
 
 
+def test_what_an_older_run_wrote_goes_where_no_new_one_comes(tmp_path: Path) -> None:
+    for name in ("page.html", "table.csv", "whole.json", "journal.jsonl"):
+        write_bytes(tmp_path / name, b"old")
+    with written_together(tmp_path, "whole.json", ["page.html", "table.csv", "none"]) as together:
+        write_bytes(together / "whole.json", b"new")
+        write_bytes(together / "table.csv", b"new")
+    new = {"whole.json": b"new", "table.csv": b"new"}
+    assert everything_in(tmp_path) == new | {"journal.jsonl": b"old"}
+
+
 def test_an_error_names_the_folder_that_was_asked_for(tmp_path: Path) -> None:
     with (
         pytest.raises(PrunusError) as told,

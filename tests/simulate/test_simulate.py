@@ -157,3 +157,5 @@ def test_reading_what_was_written_gives_it_back(tmp_path: Path) -> None:
         assert np.array_equal(ours.xyz, theirs.xyz) and np.array_equal(ours.label, theirs.label)
     depth = np.load(tmp_path / "tree" / "view_0.npy")
     assert np.allclose(depth * 1e-3, scan.views[0].depth, atol=6e-4)
+    write_simulated(tmp_path / "tree", scan)
+    assert not (tmp_path / "tree" / "rig.json").exists()  # which was of the older scan

@@ -7,7 +7,7 @@ import hashlib
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -124,11 +124,12 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 
 @contextlib.contextmanager
-def written_together(folder: Path, last: str) -> Iterator[Path]:
+def written_together(folder: Path, last: str, older: Collection[str] = ()) -> Iterator[Path]:
     """A folder to write to, whose files then come into `folder` together, `last` after the others.
 
     So a file called `last` says that all beside it is whole and of one run, even where a run was
-    killed: an older one goes before the first new file comes. Nothing comes of a run that fails.
+    killed: an older one goes before the first new file comes, and so do the files called as
+    `older` says, which would else be taken for the new run's. Nothing comes of a run that fails.
     Raises PrunusError where the folder cannot be made or written.
     """
     temporary = None
@@ -136,7 +137,8 @@ def written_together(folder: Path, last: str) -> Iterator[Path]:
         folder.mkdir(parents=True, exist_ok=True)
         temporary = Path(tempfile.mkdtemp(dir=folder, prefix=TEMPORARY))
         yield temporary
-        (folder / last).unlink(missing_ok=True)
+        for name in (last, *older):
+            (folder / name).unlink(missing_ok=True)
         for path in sorted(temporary.iterdir(), key=lambda path: path.name == last):
             path.replace(folder / path.name)
     except OSError as error:

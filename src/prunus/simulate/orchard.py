@@ -51,7 +51,7 @@ def write_simulated(folder: Path, scan: Scan, views: bool = False) -> None:
         branch[own] = branch_of_rows(branches(tree), len(tree))[scan.node[own]]
         label[own] = tree.label[scan.node[own]]
     truth = {"kind": scan.kind, "tree": scan.tree, "branch": branch, "label": label}
-    with written_together(folder, "scan.ply") as together:
+    with written_together(folder, "scan.ply", older=["rig.json"]) as together:
         if views:
             _write_views(together, scan)
         write_skeleton(together / "truth.json", scan.truth)
