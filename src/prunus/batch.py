@@ -15,9 +15,9 @@ from prunus.intake import Scan, open_scan
 from prunus.io.export import write_ply
 from prunus.io.inputs import clouds_in, is_one, names_of
 from prunus.io.names import named_branches
+from prunus.io.plans import read_plan
 from prunus.io.records import EdgesByLabel, TreeRecord
 from prunus.io.safely import write_bytes, written_together
-from prunus.io.plans import read_plan
 from prunus.io.skeletons import read_skeleton, sha256_of, write_skeleton
 from prunus.io.swc import write_swc
 from prunus.io.tables import csv_bytes, parquet_bytes, without_nan

@@ -22,9 +22,10 @@ ONE_PLACE_M = 1e-3
 SMALL_M, LARGE_M = 0.30, 12.0
 """A tree of an orchard is larger, and smaller."""
 LINE_M, PLANE_M = 0.002, 0.010
-"""Points on a line, and in a plane, are so near to it (root mean square)."""
+"""Points on a line, and in a plane, are so near to it (root mean square). No scan of a tree was
+nearer than 0.15 and 0.04 m (`python -m bench.plausible`)."""
 STEP_M = 0.02
-"""Coordinates in such steps hardly show a branch."""
+"""Coordinates in such steps hardly show a branch, which is seldom thicker."""
 SPARSE_M = 0.02
 """Points so far from each other cannot either."""
 PLACES = 200
@@ -32,7 +33,8 @@ PLACES = 200
 UPRIGHT = 0.7
 """Two upward directions are alike where their cosine is over this."""
 LINEAR = 0.35
-"""Local wood is a line by so much, on average."""
+"""Local wood is a line by so much, on average: 0.41 at least on 94 simulated scans of trees, 0.28
+at most on noise, hedges and cones of needles (`python -m bench.plausible`)."""
 
 TRY = "expected one dormant tree, standing, Z up, in metres: see --frame, --unit, --base"
 
