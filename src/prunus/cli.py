@@ -113,7 +113,8 @@ BasePoint = Annotated[
     ),
 ]
 FrameOfFile = Annotated[
-    Frame, typer.Option("--frame", help="Frame of the file; auto goes by the evidence in it.")
+    Frame,
+    typer.Option("--frame", help="Axes of the file (docs/frames.md); auto: by the evidence in it."),
 ]
 UnitOfFile = Annotated[
     Unit | None,
