@@ -12,13 +12,13 @@ FAR = np.array([31.0, -7.0, 2.0])
 """The trunk stands there in the file."""
 
 
-def graph(frame: str = "z-up", kinds: bool = True) -> ScoredGraph:
+def graph(frame: str = "z-up", kinds: bool = True, foot: Floats = FAR) -> ScoredGraph:
     """A trunk of 1 m, a leader of 1 m on it, and a shoot of 1 m that hangs from its top."""
     trunk = [(0, 0, z) for z in np.arange(0, 1.01, 0.1)]
     leader = [(0, 0, z) for z in np.arange(1.1, 2.01, 0.1)]
     shoot = [(x, 0, 2 - 0.2 * x) for x in np.arange(0.1, 1.01, 0.1)]
     to_file = {"z-up": np.eye(3), "optical": np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]]).T}
-    xyz = (np.array([*trunk, *leader, *shoot]) + FAR) @ to_file[frame].T
+    xyz = (np.array([*trunk, *leader, *shoot]) + foot) @ to_file[frame].T
     cloud = PointCloud.from_xyz(xyz, frame)
     edges = np.array([(i, i + 1) for i in range(len(xyz) - 1)])
     category = np.zeros((len(edges), 5))
@@ -76,6 +76,13 @@ def test_a_base_far_off_says_how_it_may_have_been_meant(
     scored = graph(frame)
     with pytest.raises(PrunusError, match=meant):
         nearest_superpoint(scored, at(scored, given))
+
+
+def test_of_a_tree_at_the_origin_no_unit_is_guessed() -> None:
+    """Any base is near the origin, in millimetres."""
+    scored = graph(foot=np.zeros(3))
+    with pytest.raises(PrunusError, match=r"frame of the file\)$"):
+        nearest_superpoint(scored, np.array([1.4, 0.9, -1.4]))
 
 
 @pytest.mark.parametrize(

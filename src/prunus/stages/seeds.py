@@ -152,10 +152,14 @@ def doubts_of_base(scored: ScoredGraph, root: int) -> list[str]:
 
 
 def _meant(scored: ScoredGraph, point: Floats) -> str:
-    """The unit or frame in which a base that is far from the tree would be at it, in words."""
+    """The unit or frame in which a base that is far from the tree would be at it, in words.
+
+    A tree that stands at the origin tells no unit: there any base is near it in millimetres.
+    """
     to_file = scored.candidates.superpoints.cloud.to_input
     given = to_file.apply(point)
-    meant = {f"in {unit}": given * metres for unit, metres in UNITS.items()}
+    units = {} if near_to(scored, to_file.inverse().apply(np.zeros(3))) else UNITS
+    meant = {f"in {unit}": given * metres for unit, metres in units.items()}
     for name, to_house in FRAMES.items():
         meant[f"in the frame {name}"] = to_file.rotation @ to_house @ given
     away = {

@@ -12,7 +12,6 @@ from pathlib import Path
 
 from prunus.corrections import Settings
 from prunus.errors import OptionError
-from prunus.studio.door import is_loopback, new_token
 from prunus.studio.shelf import items_in
 
 
@@ -32,6 +31,7 @@ def open_studio(
     """
     if find_spec("viser") is None:
         raise OptionError('prunus studio needs viser: pip install "prunus[studio]"')
+    from prunus.studio.door import is_loopback, new_token
     from prunus.studio.server import Studio
 
     if token == "" or (token is None and not is_loopback(host)):
