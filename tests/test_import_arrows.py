@@ -23,7 +23,7 @@ FLOORS = [
     },
     {"report", "evaluate", "simulate", "learn", "corrections"},
     {"pipeline", "graphs", "intake"},
-    {"plausible"},
+    {"plausible", "grown"},
     {"result"},
     {"sensing", "search", "stages", "measure", "io", "field", "growth"},
     {"rules", "grammar", "params", "kernels", "networks"},

@@ -658,10 +658,13 @@ def _parameters(path: Path | None, points: str | None, no_isolate: bool) -> Para
     from prunus.params import Parameters
 
     with blaming_the_command():
-        if path == Path("paper") and not path.exists():
-            params = Parameters.paper()
+        named = {"paper": Parameters.paper, "growth": Parameters.growth}.get(str(path))
+        if path is None:
+            params = Parameters()
+        elif named is not None and not path.exists():
+            params = named()
         else:
-            params = Parameters() if path is None else Parameters.from_toml(path)
+            params = Parameters.from_toml(path)
         if no_isolate:
             params = params.changed("isolation", isolate="never")
         if points is None:

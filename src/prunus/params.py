@@ -145,10 +145,11 @@ class Grow(_Group):
 class Search(_Group):
     """The search; all but `score` is of the population-based one."""
 
-    score: Literal["learned", "paper"] = _number(
+    score: Literal["learned", "paper", "growth"] = _number(
         "learned", "-", "-",
         "'paper': SkelScore and the population-based search; 'learned': beyond it, all labels at "
-        "once (a scorer that tells no categories gets the paper's)",
+        "once (a scorer that tells no categories gets the paper's); 'growth': no search, the tree "
+        "grows on the votes of the point field (new, not the default yet)",
     )  # fmt: skip
 
     K: int = _number(500, "K", "skeletons", "size of the population", ge=1, le=100_000)
@@ -228,6 +229,11 @@ class Parameters(_Group):
             leaders=Leaders(min_length=0.0),
             side_branches=SideBranches(several=False),
         )
+
+    @classmethod
+    def growth(cls) -> Parameters:
+        """The chain that votes for the axes of branches and grows the tree on them."""
+        return cls(search=Search(score="growth"))
 
     @classmethod
     def parse(cls, values: Any, source: str = "params") -> Parameters:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from prunus.errors import NoTreeError, PrunusError
+from prunus.grown import grow_tree
 from prunus.measure import remarks
 from prunus.model import Floats, PointCloud, ScoredGraph, SeededGraph, Skeleton
 from prunus.model.arrays import frozen
@@ -67,6 +68,8 @@ def follow(
     """What `skeletonize` finds, tree or not: for experiments, which count the failures too."""
     at = None if base is None else cloud.to_input.inverse().apply(_point(base))
     params, seed = checked_params(params), checked_seed(seed)
+    if params.search.score == "growth":
+        return _grown(cloud, at, params, seed)
     if scorer is None:
         scorer = NetworkScorer.shipped(params.confidence.edge_net)
     check_scorer(scorer)
@@ -104,6 +107,21 @@ def follow(
         skeleton, seeded, found.score, found.history, seconds, params, seed, warnings,
         notes, scan, isolated,
     )  # fmt: skip
+
+
+def _grown(cloud: PointCloud, at: Floats | None, params: Parameters, seed: int) -> Result:
+    """The tree that grows on the votes of the point field."""
+    seconds: Seconds = {}
+    grown = grow_tree(cloud, at, params, np.random.default_rng(seed), seconds)
+    with timed(seconds, "measures"):
+        warnings = [UNKNOWN_TRUST, *remarks(grown.skeleton, grown.graph, for_tips=False)]
+    return Result(
+        grown.skeleton, grown.graph, 0.0, np.zeros(0), seconds, params, seed, warnings,
+        grown.notes, cloud, grown.isolated,
+    )  # fmt: skip
+
+
+UNKNOWN_TRUST = "how far to trust a tree that grew on votes is not measured yet"
 
 
 def _judged(result: Result) -> Result:

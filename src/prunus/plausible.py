@@ -49,9 +49,10 @@ class Evidence:
 
     length: metres of skeleton; across: how far its points are off one line, metres; explained: the
     share of them within r_super of it; linear: how much the median superpoint looks like a piece
-    of a branch, 0 to 1; rise: metres up a metre of leader; step: in which the coordinates come,
-    metres. Of a scorer that tells categories: trunk, whether one is in view; trust, the share of
-    the edges that are likely right, asked for where little is explained.
+    of a branch, 0 to 1, or the median confidence of a tree grown on votes; rise: metres up a metre
+    of leader; step: in which the coordinates come, metres. Of a scorer that tells categories:
+    trunk, whether one is in view; trust, the share of the edges that are likely right, asked for
+    where little is explained.
     """
 
     length: float
@@ -69,12 +70,15 @@ class Evidence:
         skeleton, graph = result.in_house, result.graph
         length, explained = float(skeleton.lengths.sum()), explained_points(skeleton, graph)
         trunk, trust = True, 1.0
-        if graph.scored.category.size:
+        if result.params.search.score == "growth":
+            linear = float(np.median(skeleton.confidence[1:])) if len(skeleton) > 1 else 0.0
+        else:
+            linear = float(np.median(Pieces.of(graph.scored).linear))
+        if graph.scored.category.size and result.params.search.score != "growth":
             trunk = bool(find_trunks(graph.scored))
         if explained < MOST_EXPLAINED and result.trust is not None:
             trust = result.trust.tree
         across = float(spread(graph.superpoints.cloud.xyz)[1])
-        linear = float(np.median(Pieces.of(graph.scored).linear))
         rise, step = rise_of_leaders(skeleton), coarseness(result.scan)
         return cls(length, across, explained, linear, rise, step, trunk, trust)
 

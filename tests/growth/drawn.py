@@ -56,3 +56,20 @@ def _along(corners: Floats) -> tuple[Floats, Floats]:
         nodes.append(start + share * (end - start))
         directions.append(np.repeat([(end - start) / length], len(share), axis=0))
     return np.concatenate(nodes), np.concatenate(directions)
+
+
+def surface_of(pieces: list[Piece], rng: np.random.Generator, apart: float = 0.004) -> Floats:
+    """Points (P, 3) of the surface of some pieces, with a millimetre of noise."""
+    found = []
+    for _, corners, radius in pieces:
+        for start, end in itertools.pairwise(corners):
+            axis = np.subtract(end, start)
+            length = float(np.linalg.norm(axis))
+            count = int(2 * np.pi * radius * length / apart**2)
+            aside = np.cross(axis, [0.3, 0.5, 0.8])
+            aside /= np.linalg.norm(aside)
+            turn = rng.uniform(0, 2 * np.pi, (count, 1))
+            ring = np.cos(turn) * aside + np.sin(turn) * np.cross(axis / length, aside)
+            found.append(start + rng.random((count, 1)) * axis + radius * ring)
+    places = np.concatenate(found)
+    return np.asarray(places + rng.normal(0, 0.001, places.shape))

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import cKDTree
 
-from prunus.field.voxels import Voxels
-from prunus.growth.graph import ThreadGraph
+from prunus.field.votes import Threads
+from prunus.growth.graph import ThreadGraph, confidence_of
+from prunus.growth.grow import Orchard
 from prunus.model import (
     CandidateGraph,
     Floats,
@@ -18,36 +20,43 @@ from prunus.model import (
 )
 
 REACH_M = 0.03
-"""A node stands for wood so far along its branch, both ways."""
+"""A node stands for the points so near to the surface of its branch."""
 
 
-def seeded_graph(cloud: PointCloud, voxels: Voxels, graph: ThreadGraph, foot: int) -> SeededGraph:
-    """The graph of the threads of a cloud whose voxels these are; its base is the foot."""
+def seeded_graph(
+    cloud: PointCloud, of_voxel: Ints, voxels: Floats, orchard: Orchard
+) -> SeededGraph:
+    """The graph of the trees in view; its base is the foot of the tree that is meant.
+
+    cloud: the points of that tree; of_voxel (P,): the voxel that holds each; voxels (V, 3): where
+    these are.
+    """
+    graph = orchard.graph
     threads = graph.threads
-    edges, first = np.unique(graph.edges, axis=0, return_index=True)
+    edges = np.unique(graph.edges, axis=0)
+    confidence = np.maximum(confidence_of(threads, edges), confidence_of(threads, edges[:, ::-1]))
     role = np.sqrt(threads.role[edges[:, 0]] * threads.role[edges[:, 1]])
-    wood = 1 - role[:, Role.NO_WOOD]
-    length = np.linalg.norm(threads.xyz[edges[:, 0]] - threads.xyz[edges[:, 1]], axis=1)
-    cost = np.minimum(*graph.costs.reshape(2, -1))[first]
-    confidence = wood * np.clip(length / np.maximum(cost, 1e-9), 0.0, 1.0)
     return SeededGraph(
         ScoredGraph(
-            CandidateGraph(_superpoints(cloud, voxels, graph), edges), confidence,
+            CandidateGraph(_superpoints(cloud, of_voxel, voxels, graph.threads), edges), confidence,
             _categories(role), "field",
         ),
-        foot, _tips(graph),
+        orchard.main, _tips(graph),
     )  # fmt: skip
 
 
-def _superpoints(cloud: PointCloud, voxels: Voxels, graph: ThreadGraph) -> Superpoints:
-    threads = graph.threads
-    node = threads.of_voxel[voxels.of_point]
-    order = np.argsort(node, kind="stable")
-    order = order[np.searchsorted(node[order], 0) :]
-    start = np.searchsorted(node[order], np.arange(len(threads) + 1))
-    return Superpoints(
-        cloud, threads.xyz, start, order, REACH_M, np.full(len(threads), REACH_M / 2)
-    )
+def _superpoints(
+    cloud: PointCloud, of_voxel: Ints, voxels: Floats, threads: Threads
+) -> Superpoints:
+    """The nodes with the points of the voxels within their reach."""
+    near = cKDTree(voxels).query_ball_point(threads.xyz, threads.radius + REACH_M)
+    order = np.argsort(of_voxel, kind="stable")
+    first = np.searchsorted(of_voxel[order], np.arange(len(voxels) + 1))
+    held = [np.concatenate([order[first[v] : first[v + 1]] for v in some]) if some else order[:0]
+            for some in near]  # fmt: skip
+    start = np.cumsum([0, *map(len, held)])
+    wood = np.full(len(threads), REACH_M / 2)
+    return Superpoints(cloud, threads.xyz, start, np.concatenate(held), REACH_M, wood)
 
 
 def _categories(role: Floats) -> Floats:

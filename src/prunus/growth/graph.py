@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from prunus.field.votes import Threads
-from prunus.model import Bools, Floats, Ints
+from prunus.model import Bools, Floats, Ints, Role
 
 NEAR_M = 0.04
 """Nodes so close are joined."""
@@ -81,6 +81,14 @@ def growth_costs(threads: Threads, outward: Ints, gap: Bools) -> Floats:
     along = length * (1 + np.where(gap, ASTRAY_IN_GAP, ASTRAY) * off)
     across = np.where(gap, GAP * length + GAP_SQUARED * length**2, 0.0)
     return np.asarray(along + across)
+
+
+def confidence_of(threads: Threads, outward: Ints) -> Floats:
+    """How sure wood goes (E,) over edges (E, 2): by its being wood, and its length for its cost."""
+    length = np.linalg.norm(threads.xyz[outward[:, 1]] - threads.xyz[outward[:, 0]], axis=1)
+    cost = growth_costs(threads, outward, length > NEAR_M)
+    wood = 1 - threads.role[outward, Role.NO_WOOD].max(axis=1)
+    return np.asarray(wood * np.clip(length / np.maximum(cost, 1e-9), 0.0, 1.0))
 
 
 def join_threads(threads: Threads) -> ThreadGraph:

@@ -9,7 +9,7 @@ import numpy as np
 from prunus.field.votes import Threads
 from prunus.growth.branches import Grown, cut_branches
 from prunus.growth.feet import find_feet, main_foot, nearest_foot
-from prunus.growth.graph import ThreadGraph, join_threads
+from prunus.growth.graph import ThreadGraph, confidence_of, join_threads
 from prunus.growth.parents import choose_parents
 from prunus.growth.ways import Ways, find_ways
 from prunus.model import Floats, Ints, Skeleton
@@ -31,15 +31,18 @@ class Orchard:
     main: int
 
     @classmethod
-    def of(cls, threads: Threads, base: Floats | None = None) -> Orchard:
+    def of(cls, threads: Threads, base: Floats | None = None, alone: bool = False) -> Orchard:
         """The trees of some threads; meant is that at `base` (3,), or at which the scanner looks.
 
-        Threads hold one node at least.
+        Threads hold one node at least. `alone`: all is one tree.
         """
         graph = join_threads(threads)
         feet = find_feet(graph, None if base is None else nearest_foot(threads, base))
         ways = find_ways(graph, feet)
         main = main_foot(threads, ways.foot, feet) if base is None else int(feet[0])
+        if alone:
+            feet = np.array([main])
+            ways = find_ways(graph, feet)
         return cls(graph=graph, feet=feet, ways=ways, main=main)
 
     def tree_at(self, foot: int) -> Skeleton:
@@ -47,9 +50,11 @@ class Orchard:
         threads = self.graph.threads
         grown, told = choose_parents(threads, cut_branches(threads, self.ways, foot))
         nodes = grown.nodes
+        edges = np.column_stack([nodes[np.maximum(grown.parent, 0)], nodes])
+        confidence = np.append(np.nan, confidence_of(threads, edges[1:]))
         return Skeleton.build(
             _to_the_ends(threads, grown), grown.parent, told.label,
-            radius=threads.radius[nodes], superpoint=nodes,
+            confidence=confidence, radius=threads.radius[nodes], superpoint=nodes,
         )  # fmt: skip
 
     def foot_of_voxel(self) -> Ints:

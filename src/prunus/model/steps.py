@@ -15,7 +15,7 @@ DECIMAL = (1.0, 0.1, 0.01, 0.001)
 DIGITS = 4
 """Numbers that are the same to so many digits are one."""
 APART = 3
-"""Of fewer differences only the step of single precision is told, which is known beforehand."""
+"""Of fewer places or differences only the step of single precision is told: it is known before."""
 OFF, MOST_ON = 0.1, 0.98
 """On a grid lies what is off by less of its step; so many numbers do, as a few may be of another
 kind."""
@@ -50,4 +50,7 @@ def _rounded(values: Floats) -> list[float]:
 
 def _on_grid(values: Floats, step: float) -> bool:
     counts = values / step
-    return bool(np.mean(np.abs(counts - np.round(counts)) < OFF) > MOST_ON)
+    places = np.round(counts)
+    # What all lies about one place of a grid says nothing of its steps.
+    many = len(np.unique(places)) >= APART
+    return bool(many and np.mean(np.abs(counts - places) < OFF) > MOST_ON)
