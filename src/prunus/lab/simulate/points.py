@@ -12,6 +12,7 @@ from prunus.simulate.scan import Scan
 from prunus.simulate.wood import unit
 
 UNKNOWN_ROLE = -1  # wood of a tree of which no role is known
+UNTOLD = -2  # nobody knows whether it is wood, as of what a person did not draw in a real scan
 SPUR_M = 0.06  # shorter branches are spurs
 
 ROLE_OF_LABEL = np.array([Role.STEM, Role.FRAMEWORK, Role.FRUITING_UNIT, Role.LATERAL])
@@ -21,10 +22,11 @@ ROLE_OF_LABEL = np.array([Role.STEM, Role.FRAMEWORK, Role.FRUITING_UNIT, Role.LA
 class PointTruth:
     """What is true of each of P points.
 
-    role (P,), `UNKNOWN_ROLE` where only its being wood is known; branch (P,), counted over all
-    trees, -1 = none; axis (P, 3), the nearest point of the axis of its branch; radius (P,) there,
-    metres; toward_foot (P, 3), the unit direction of that axis. Where there is no wood the axis
-    is the point itself, and the others are zero.
+    role (P,), `UNKNOWN_ROLE` where only its being wood is known, `UNTOLD` where not even that;
+    branch (P,), counted over all trees, -1 = none, -2 = untold; axis (P, 3), the nearest point of
+    the axis of its branch; radius (P,) there, metres, NaN where it is not known; toward_foot
+    (P, 3), the unit direction of that axis. Where there is no wood the axis is the point itself,
+    and the others are zero.
     """
 
     role: Ints
