@@ -554,7 +554,17 @@ def _field_trained(
         from prunus.lab.learn.field_school import FieldCourse, field_school
     except ImportError as error:
         raise OptionError("training needs torch and onnx: pip install 'prunus[train]'") from error
-    course = FieldCourse(folder=output, recipe=settings, start=start, jobs=jobs)
+    from prunus.experiment.gold import corrected_in
+
+    corrected = []
+    for folder in folders:
+        done, in_work = corrected_in(folder, scans)
+        corrected += done
+        for name in in_work:
+            waiting.say(f"{folder / name}: not marked as done, so left out")
+    course = FieldCourse(
+        folder=output, recipe=settings, corrected=corrected, start=start, jobs=jobs
+    )
     return field_school(course, waiting.watch, waiting.say)
 
 

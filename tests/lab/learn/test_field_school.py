@@ -1,4 +1,4 @@
-"""The point field trained on two small scans: resumed, exported, compared; other recipes refused."""
+"""The point field trained on two small scans: resumed, exported, compared; others refused."""
 
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
@@ -9,12 +9,13 @@ import pytest
 torch = pytest.importorskip("torch", reason="training needs torch: pip install 'prunus[train]'")
 
 from prunus.errors import OptionError, PrunusError  # noqa: E402
+from prunus.experiment.gold import Corrected  # noqa: E402
 from prunus.field.network import see_field  # noqa: E402
-from prunus.lab.learn import field_examples, field_making, field_train  # noqa: E402
+from prunus.lab.learn import field_corrected, field_examples, field_making, field_train  # noqa: E402
 from prunus.lab.learn.field_examples import FieldExample, lesson_of  # noqa: E402
 from prunus.lab.learn.field_losses import logged  # noqa: E402
 from prunus.lab.learn.field_recipe import SHIPPED, FieldRecipe, Steps, recipe_of  # noqa: E402
-from prunus.lab.learn.field_school import FieldCourse, begun, field_school  # noqa: E402
+from prunus.lab.learn.field_school import FieldCourse, begun, field_school, split  # noqa: E402
 from prunus.lab.learn.field_train import Training, read_checkpoint, train_field  # noqa: E402
 from prunus.model import Role  # noqa: E402
 from prunus.simulate.scan import Scan  # noqa: E402
@@ -170,6 +171,38 @@ def test_a_scan_of_too_few_points_is_left_out_and_not_made_again(
     assert [one.done for one in wanted] == [False, False]
     list(field_making.make_examples(wanted, 1))
     assert [(one.done, one.path.exists()) for one in wanted] == [(True, False)] * 2
+
+
+@pytest.mark.parametrize(("trees", "held_out"), [(1, []), (4, []), (5, [4]), (11, [4, 9])])
+def test_some_of_enough_corrected_trees_are_held_out(trees: int, held_out: list[int]) -> None:
+    paths = [Path(f"{number:03d}-tree.npz") for number in range(trees)]
+    learned, others = split(paths)
+    assert others == [paths[number] for number in held_out]
+    assert sorted(learned + others) == paths
+
+
+def test_a_corrected_tree_is_learned_from_and_said_to_be_little(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Tree(Corrected):
+        made_of = "digest"
+
+    def example(subject: Corrected) -> FieldExample:
+        return FieldExample.read(min((folder / "held-out").glob("*.npz")))
+
+    monkeypatch.setattr(field_corrected, "corrected_example", example)
+    read = list[Path]()
+    drawn = Training.drawn
+    monkeypatch.setattr(
+        Training, "drawn", lambda own, rng: read.append(drawn(own, rng)) or read[-1]
+    )
+    own = FieldCourse(folder=tmp_path, recipe=recipe(), corrected=[Tree(Path("apple"), None)])
+    note, *lines = field_school(own, silently, str)
+    assert "1 corrected tree, fewer than 5, is little" in note
+    assert not any(line.startswith("corrected") for line in lines)
+    assert {path.parent.name for path in read} == {"examples", "corrected"}
+    with pytest.raises(PrunusError, match="corrected.000-apple: digest there, None asked for"):
+        field_school(course(tmp_path), silently, str)
 
 
 @pytest.mark.slow

@@ -207,7 +207,9 @@ def read_checkpoint(path: Path) -> dict[str, Any]:
     content = read_bytes(path)
     try:
         state = torch.load(io.BytesIO(content), weights_only=True, map_location="cpu")
-        return {name: state[name] for name in ("net", "optimizer", "step", "recent")}
+        return {name: state[name] for name in ("net", "optimizer", "step")} | {
+            "recent": state.get("recent", [])
+        }
     except Exception as error:
         # torch raises whatever unpickling trips over: the file is at fault in every case
         why = type(error).__name__

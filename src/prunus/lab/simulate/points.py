@@ -47,7 +47,7 @@ def point_truth(scan: Scan) -> PointTruth:
         row = scan.node[own]
         roles, owner = roles_of(tree)
         role[own], branch[own] = roles[row], owner[row] + numbered
-        axis[own] = _on_axis(tree, row, scan.xyz[own])
+        axis[own] = on_axis(tree, row, scan.xyz[own])
         radius[own] = tree.radius[row]
         direction[own] = -unit(tree.edge_vectors[row])
         numbered += owner.max(initial=-1) + 1
@@ -76,7 +76,7 @@ def roles_of(tree: Skeleton) -> tuple[Ints, Ints]:
     return role, owner
 
 
-def _on_axis(tree: Skeleton, row: Ints, xyz: Floats) -> Floats:
+def on_axis(tree: Skeleton, row: Ints, xyz: Floats) -> Floats:
     """The nearest points (P, 3) on the edges that end in rows (P,), and on those next to them.
 
     Noise moves a point along its branch too, past the end of the edge that it was drawn from; so
