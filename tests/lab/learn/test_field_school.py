@@ -201,7 +201,7 @@ def test_a_corrected_tree_is_learned_from_and_said_to_be_little(
     assert "1 corrected tree, fewer than 5, is little" in note
     assert not any(line.startswith("corrected") for line in lines)
     assert {path.parent.name for path in read} == {"examples", "corrected"}
-    with pytest.raises(PrunusError, match="corrected.000-apple: digest there, None asked for"):
+    with pytest.raises(PrunusError, match=r"corrected\.000-apple: digest there, None asked for"):
         field_school(course(tmp_path), silently, str)
 
 
