@@ -17,7 +17,6 @@ from prunus.io.safely import write_bytes
 from prunus.model import Floats
 
 LOG, PICTURE = "log.jsonl", "losses.html"
-LOGGED_EVERY = 50  # steps
 SMOOTHED_OVER = 0.05  # of the rows, for the darker line
 TITLES = {
     "role": "role: cross entropy",

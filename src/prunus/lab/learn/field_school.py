@@ -73,14 +73,10 @@ def field_school(course: FieldCourse, watch: Watch[Any], say: Say) -> list[str]:
 
     PrunusError where the folder holds a training of another recipe, or of other trees.
     """
-    recipe, folder, start = course.recipe, course.folder, course.begins
+    recipe, folder = course.recipe, course.folder
     with blaming_the_command():
-        net = begun(start, recipe.seed)
-    made_from = {
-        "recipe": recipe.model_dump(),
-        "from": None if start is None else digest_of(start),
-        "corrected": {as_text(name): own.made_of for name, own in course.named.items()},
-    }
+        net = begun(course.begins, recipe.seed)
+    made_from = _made_from(course)
     claim(folder, made_from)
     learned = _made(examples_to_make(folder / "examples", recipe.examples), course.jobs, watch)
     held_out = _made(examples_to_make(folder / "held-out", recipe.held_out), course.jobs, watch)
@@ -90,16 +86,26 @@ def field_school(course: FieldCourse, watch: Watch[Any], say: Say) -> list[str]:
         simulated=learned,
         corrected=own,
         share=recipe.corrected.share,
-        steps=recipe.from_scratch if start is None else recipe.going_on,
+        steps=recipe.from_scratch if course.begins is None else recipe.going_on,
         seed=recipe.seed,
     )
     net = _trained(training, net, watch, say)
     write_bytes(folder / WEIGHTS, field_onnx(net, _some_voxels(learned[0])))
     sets = {"simulated": held_out, "corrected": own_held_out}
     tables = {name: _compared(folder / WEIGHTS, paths) for name, paths in sets.items() if paths}
-    report = {**made_from, "from": start and as_text(start.name), "held_out": tables}
-    write_bytes(folder / REPORT, (json.dumps(report, indent=1) + "\n").encode())
+    report = json.dumps(made_from | {"held_out": tables}, indent=1)
+    write_bytes(folder / REPORT, f"{report}\n".encode())
     return [*_notes(len(course.corrected)), *_lines(tables, folder)]
+
+
+def _made_from(course: FieldCourse) -> dict[str, Any]:
+    """All that the weights depend on."""
+    start = course.begins
+    return {
+        "recipe": course.recipe.model_dump(),
+        "from": None if start is None else digest_of(start),
+        "corrected": {as_text(name): own.made_of for name, own in course.named.items()},
+    }
 
 
 def split(corrected: list[Path]) -> tuple[list[Path], list[Path]]:
@@ -130,7 +136,10 @@ def _made(wanted: list[Made], jobs: int, watch: Watch[Any]) -> list[Path]:
     if missing:
         for _ in watch(make_examples(missing, min(jobs, len(missing))), "examples", len(missing)):
             pass
-    return [one.path for one in wanted if one.path.exists()]
+    made = [one.path for one in wanted if one.path.exists()]
+    if wanted and not made:
+        raise PrunusError(f"{wanted[0].path.parent}: no scan with enough points; expected some")
+    return made
 
 
 def _corrected(course: FieldCourse, watch: Watch[Any]) -> list[Path]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ from prunus.errors import PrunusError
 from prunus.field.network import COLUMNS, OFFSET_M, RADIUS_M
 from prunus.io.safely import write_bytes
 from prunus.lab.learn.field_examples import FieldExample, Lesson, lesson_of
-from prunus.lab.learn.field_losses import LOGGED_EVERY, Losses, forget_after, log_losses
+from prunus.lab.learn.field_losses import Losses, forget_after, log_losses
 from prunus.lab.learn.field_net import FieldNet, Tables
 from prunus.lab.learn.field_recipe import Steps
 from prunus.lab.simulate.points import UNKNOWN_ROLE, UNTOLD
@@ -32,7 +31,7 @@ FARTHEST = 4.0  # longer errors of an offset (in 3 cm) count no more
 WEIGHT_DECAY = 1e-3
 WARM_UP_STEPS, WARM_UP = 200, 0.1  # the learning rate rises over so many, or that share of all
 LAST_RATE = 0.01  # it ends at this share of its highest
-KEPT_EVERY = 200  # steps
+KEPT_EVERY = 50  # steps; so often the losses are logged too
 CHECKPOINT = "checkpoint.pt"
 
 
@@ -123,12 +122,11 @@ class Training:
 
 @dataclass(eq=False)
 class Progress:
-    """A network in training: so many steps are done; `recent` are the losses not yet logged."""
+    """A network in training, and how many steps are done."""
 
     net: FieldNet
     optimizer: torch.optim.Optimizer
     step: int = 0
-    recent: list[Losses] = field(default_factory=list)
 
     @classmethod
     def begun(cls, net: FieldNet, path: Path) -> Progress:
@@ -138,14 +136,14 @@ class Progress:
             state = read_checkpoint(path)
             net.load_state_dict(state["net"])
             own.optimizer.load_state_dict(state["optimizer"])
-            own.step, own.recent = state["step"], state["recent"]
+            own.step = state["step"]
         return own
 
     def keep(self, path: Path) -> None:
         """Write a checkpoint, whole or not at all."""
         held = io.BytesIO()
         state = {"net": self.net.state_dict(), "optimizer": self.optimizer.state_dict()}
-        torch.save(state | {"step": self.step, "recent": self.recent}, held)
+        torch.save(state | {"step": self.step}, held)
         write_bytes(path, held.getvalue())
 
 
@@ -159,14 +157,13 @@ def train_field(training: Training, net: FieldNet, watch: Watch[Any]) -> FieldNe
     last, path = training.steps.steps, training.checkpoint
     own = Progress.begun(net.to(device), path)
     forget_after(training.folder, own.step)
-    numbers: Iterable[int] = range(own.step, last)
+    numbers, recent = range(own.step, last), list[Losses]()
     for number in watch(numbers, f"steps to {last}", last - own.step):
-        own.recent.append(_step(own, training, number, device))
+        recent.append(_step(own, training, number, device))
         own.step = number + 1
-        if own.step % LOGGED_EVERY == 0 or own.step == last:
-            log_losses(training.folder, own.step, own.recent)
-            own.recent.clear()
         if own.step % KEPT_EVERY == 0 or own.step == last:
+            log_losses(training.folder, own.step, recent)
+            recent.clear()
             own.keep(path)
     return own.net.cpu()
 
@@ -207,9 +204,7 @@ def read_checkpoint(path: Path) -> dict[str, Any]:
     content = read_bytes(path)
     try:
         state = torch.load(io.BytesIO(content), weights_only=True, map_location="cpu")
-        return {name: state[name] for name in ("net", "optimizer", "step")} | {
-            "recent": state.get("recent", [])
-        }
+        return {name: state[name] for name in ("net", "optimizer", "step")}
     except Exception as error:
         # torch raises whatever unpickling trips over: the file is at fault in every case
         why = type(error).__name__
