@@ -1,6 +1,7 @@
 """The point field trained on two small scans: resumed, exported, compared; others refused."""
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ torch = pytest.importorskip("torch", reason="training needs torch: pip install '
 
 from prunus.errors import OptionError, PrunusError  # noqa: E402
 from prunus.experiment.gold import Corrected  # noqa: E402
+from prunus.field.network import SHIPPED as WEIGHTS  # noqa: E402
 from prunus.field.network import see_field  # noqa: E402
 from prunus.lab.learn import field_corrected, field_examples, field_making, field_train  # noqa: E402
 from prunus.lab.learn.field_examples import FieldExample, lesson_of  # noqa: E402
@@ -113,6 +115,15 @@ def test_training_goes_on_from_weights_in_a_file(folder: Path, file: str) -> Non
     assert all(torch.equal(own, net.state_dict()[k]) for k, own in weights_in(folder).items())
 
 
+def test_corrected_trees_are_learned_from_by_the_shipped_network_unless_said_otherwise() -> None:
+    trees = [Corrected(Path("apple"), None)]
+    own = FieldCourse(folder=Path("run"), recipe=recipe(), corrected=trees)
+    assert own.begins == WEIGHTS
+    assert replace(own, start="scratch").begins is None
+    assert replace(own, corrected=[]).begins is None
+    begun(own.begins, 0)
+
+
 def test_a_training_that_goes_on_takes_fewer_steps(folder: Path, tmp_path: Path) -> None:
     own = FieldCourse(folder=tmp_path, recipe=recipe(), start=str(folder / "field.onnx"))
     field_school(own, silently, str)
@@ -195,7 +206,12 @@ def test_a_corrected_tree_is_learned_from_and_said_to_be_little(
     monkeypatch.setattr(
         Training, "drawn", lambda own, rng: read.append(drawn(own, rng)) or read[-1]
     )
-    own = FieldCourse(folder=tmp_path, recipe=recipe(), corrected=[Tree(Path("apple"), None)])
+    own = FieldCourse(
+        folder=tmp_path,
+        recipe=recipe(),
+        corrected=[Tree(Path("apple"), None)],
+        start="scratch",
+    )
     note, *lines = field_school(own, silently, str)
     assert "1 corrected tree, fewer than 5, is little" in note
     assert not any(line.startswith("corrected") for line in lines)

@@ -18,7 +18,7 @@ from typing import Any
 
 import torch
 
-from prunus.errors import OptionError, PrunusError, blaming_the_command
+from prunus.errors import PrunusError, blaming_the_command
 from prunus.experiment.gold import Corrected
 from prunus.field.network import SHIPPED
 from prunus.field.voxels import Voxels
@@ -45,7 +45,7 @@ class FieldCourse:
 
     folder: where all of it is kept; corrected: trees that a person corrected; start: the network to
     go on from, `shipped` or a file (.onnx, or a checkpoint), `scratch` for none, None = the shipped
-    one, if there is one, where there are corrected trees; jobs: examples made at the same time.
+    one where there are corrected trees; jobs: examples made at the same time.
     """
 
     folder: Path
@@ -56,10 +56,8 @@ class FieldCourse:
 
     @property
     def begins(self) -> Path | None:
-        """The file of the network to go on from; OptionError where none is shipped."""
-        start = self.start or ("shipped" if self.corrected and SHIPPED.exists() else "scratch")
-        if start == "shipped" and not SHIPPED.exists():
-            raise OptionError("--from shipped: no network of the point field is shipped yet")
+        """The file of the network to go on from."""
+        start = self.start or ("shipped" if self.corrected else "scratch")
         return {"scratch": None, "shipped": SHIPPED}.get(start, Path(start))
 
     @property
@@ -175,8 +173,8 @@ def _some_voxels(path: Path) -> Voxels:
 
 
 def _compared(made: Path, examples: list[Path]) -> dict[str, Figures]:
-    """The figures of the network made, and of the shipped one, where there is one."""
-    networks = {"now": made} | ({"shipped": SHIPPED} if SHIPPED.exists() else {})
+    """The figures of the network made, and of the shipped one."""
+    networks = {"now": made, "shipped": SHIPPED}
     return {name: figures_of(path, examples) for name, path in networks.items()}
 
 
