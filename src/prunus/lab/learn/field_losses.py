@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from prunus.experiment.figures import Frame
+from prunus.experiment.figures import Frame, round_up
 from prunus.io.jsonl import read_lines_of
 from prunus.io.safely import write_bytes
 from prunus.model import Floats
@@ -87,10 +87,11 @@ def _mean(values: Sequence[float]) -> float:
 
 def _curve(title: str, step: Floats, values: Floats) -> str:
     """A thin line of the values, and a thick one of their running mean."""
-    frame = Frame(title, "step", "", float(step.max(initial=1)), float(values.max(initial=0)))
+    thousands, most = step / 1000, float(values.max(initial=0))
+    frame = Frame(title, "thousand steps", "", round_up(thousands.max(initial=0)), round_up(most))
     width = max(1, round(SMOOTHED_OVER * len(step)))
     for line, look in ((values, "1"), (_running_mean(values, width), "2.5")):
-        places = (frame.at(x, y) for x, y in zip(step, line, strict=True))
+        places = (frame.at(x, y) for x, y in zip(thousands, line, strict=True))
         points = " ".join(f"{x:.1f},{y:.1f}" for x, y in places)
         frame.parts.append(
             f'<polyline points="{points}" fill="none" stroke="#0072b2" stroke-width="{look}" '
