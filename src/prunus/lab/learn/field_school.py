@@ -36,6 +36,7 @@ from prunus.learn.lessons import FEWEST, Watch
 from prunus.names import as_text
 
 WEIGHTS, REPORT = "field.onnx", "field.json"
+DIGITS = 16  # of a digest, enough to know a file by
 Say = Callable[[str], None]
 
 
@@ -101,8 +102,8 @@ def _made_from(course: FieldCourse) -> dict[str, Any]:
     start = course.begins
     return {
         "recipe": course.recipe.model_dump(),
-        "from": None if start is None else digest_of(start),
-        "corrected": {as_text(name): own.made_of for name, own in course.named.items()},
+        "from": None if start is None else digest_of(start)[:DIGITS],
+        "corrected": {as_text(name): own.made_of[:DIGITS] for name, own in course.named.items()},
     }
 
 
