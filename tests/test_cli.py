@@ -436,6 +436,27 @@ def test_an_orchard_is_written_tree_by_tree(tmp_path: Path) -> None:
     assert {path.name for path in out.iterdir() if path.is_dir()} == set(names)
 
 
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ([], "no folder to learn from"),
+        (["--network", "isolation"], "no folder to learn from"),
+        (["--recipe", "mine.toml"], "--recipe: of no use with --network edges"),
+        (["--network", "field", "--epochs", 3], "stand in its recipe"),
+        (["--network", "field", "--seed", 3], "stand in its recipe"),
+        (["--network", "field", "--recipe", "mine.toml"], "mine.toml: seed"),
+    ],
+)
+def test_a_training_that_cannot_be_meant_blames_the_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, given: list[object], said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("mine.toml").write_text("seed = -1\n")
+    done = prunus("train", "-o", tmp_path / "out", *given)
+    assert (done.exit_code, said in done.stderr) == (2, True), done.stderr
+    assert not (tmp_path / "out").exists()
+
+
 def test_training_on_a_folder_without_scans_says_what_it_expects(tmp_path: Path) -> None:
     pytest.importorskip("torch")
     done = prunus("train", tmp_path, "-o", tmp_path / "mine.onnx")

@@ -95,6 +95,7 @@ class Network(StrEnum):
 
     EDGES = "edges"
     ISOLATION = "isolation"
+    FIELD = "field"
 
 
 class EdgeNet(StrEnum):
@@ -470,12 +471,15 @@ def simulate(
 @app.command(rich_help_panel=LEARNING)
 def train(
     ctx: typer.Context,
-    folders: Annotated[
-        list[Path], typer.Argument(help="Simulated scans, or the studio's folders with labels.")
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="Weights to write (.onnx); a folder for field.")
     ],
-    output: Annotated[Path, typer.Option("-o", "--output", help="Weights to write (.onnx).")],
+    folders: Annotated[
+        list[Path] | None, typer.Argument(help="Simulated scans, or the studio's folders.")
+    ] = None,
     network: Annotated[
-        Network, typer.Option(help="edges: their confidence; isolation: one tree out of a scan.")
+        Network,
+        typer.Option(help="edges: their confidence; isolation: one tree out; field: of points."),
     ] = Network.EDGES,
     edge_net: Annotated[
         EdgeNet, typer.Option(help="paper: Appendix A; ours: edges in context.")
@@ -483,25 +487,40 @@ def train(
     start: Annotated[
         str | None,
         typer.Option(
-            "--from", help="Go on from: ours, paper, a file, scratch. [default: ours with labels]"
+            "--from",
+            help="Go on from: ours, paper, shipped (field), a file, scratch. "
+            "[default: ours with labels]",
         ),
     ] = None,
     scans: Scans = None,
     seed: Seed = 0,
     epochs: Annotated[int | None, typer.Option(min=1, help="[default: as the recipe]")] = None,
+    recipe: Annotated[
+        Path | None,
+        typer.Option(exists=True, dir_okay=False, help="Of field: TOML. [default: the shipped]"),
+    ] = None,
     jobs: Jobs = CORES,
 ) -> None:
-    """Learn the edge confidence (or isolation) from scans with their truth.
-
-    Prints the paper's tables.
+    """Learn a network from scans with their truth, and print how well it does.
 
     From simulated trees: `prunus train orchard -o mine.onnx`
 
     From edges labelled in the studio: `prunus train prunus-studio -o mine.onnx`
 
     To use it: `prunus skeletonize tree.ply --weights mine.onnx`
+
+    The point field, again to go on: `prunus train --network field -o run`
     """
     waiting: Waiting = ctx.obj
+    if network == Network.FIELD:
+        if epochs is not None or seed:
+            raise OptionError("--network field: seed and steps stand in its recipe: see --recipe")
+        waiting.tell(_field_trained(waiting, folders or [], output, recipe, start, scans, jobs))
+        return
+    if recipe is not None:
+        raise OptionError(f"--recipe: of no use with --network {network.value}; expected field")
+    if not folders:
+        raise OptionError("no folder to learn from: expected simulated scans, or the studio's")
     waiting.doing("loading torch", at_once=True)
     from prunus.learn.school import Course, isolation_school, lines_of, school
 
@@ -514,6 +533,39 @@ def train(
         waiting.tell([found])
     else:
         waiting.tell(lines_of(report))
+
+
+def _field_trained(
+    waiting: Waiting,
+    folders: list[Path],
+    output: Path,
+    recipe: Path | None,
+    start: str | None,
+    scans: Path | None,
+    jobs: int,
+) -> list[str]:
+    """Train the network of the point field; what to say of it."""
+    from prunus.lab.learn.field_recipe import recipe_of
+
+    with blaming_the_command():
+        settings = recipe_of(recipe)
+    waiting.doing("loading torch", at_once=True)
+    try:
+        from prunus.lab.learn.field_school import FieldCourse, field_school
+    except ImportError as error:
+        raise OptionError("training needs torch and onnx: pip install 'prunus[train]'") from error
+    from prunus.experiment.gold import corrected_in
+
+    corrected = []
+    for folder in folders:
+        done, in_work = corrected_in(folder, scans)
+        corrected += done
+        for name in in_work:
+            waiting.say(f"{folder / name}: not marked as done, so left out")
+    course = FieldCourse(
+        folder=output, recipe=settings, corrected=corrected, start=start, jobs=jobs
+    )
+    return field_school(course, waiting.watch, waiting.say)
 
 
 @app.command(rich_help_panel=LEARNING)

@@ -66,7 +66,7 @@ def histogram(title: str, values: dict[str, Sequence[float]], most: float = 1.0)
     known = {way: [v for v in own if not math.isnan(v)] for way, own in values.items()}
     counts = {way: _counted(own, most, bins) for way, own in known.items()}
     top = max(int(count.max()) for count in counts.values())
-    frame = Frame(title, "edit ratio", "trials", most, _round_up(top))
+    frame = Frame(title, "edit ratio", "trials", most, round_up(top))
     each = most / bins / (len(counts) + 0.4)
     for k, (way, count) in enumerate(counts.items()):
         for b, number in enumerate(count.tolist()):
@@ -97,7 +97,7 @@ def scatter(
     """A point a trial, coloured by way."""
     x_most = max((max(xs, default=0) for xs, _ in points.values()), default=1)
     y_most = max((max(ys, default=0) for _, ys in points.values()), default=1)
-    frame = Frame(title, x, y, _round_up(x_most), _round_up(y_most))
+    frame = Frame(title, x, y, round_up(x_most), round_up(y_most))
     for way, (xs, ys) in points.items():
         for px, py in zip(xs, ys, strict=True):
             cx, cy = frame.at(px, py)
@@ -114,7 +114,7 @@ def legend(ways: Sequence[str]) -> str:
     return '<p class="quiet">' + " &nbsp; ".join(dots) + "</p>"
 
 
-def _round_up(most: float) -> float:
+def round_up(most: float) -> float:
     """The next number that an axis may end at."""
     if most <= 0:
         return 1.0

@@ -15,18 +15,18 @@ from typing import Any
 import numpy as np
 
 from prunus.corrections.journal import NAME as JOURNAL
-from prunus.corrections.journal import read_journal, status_of
+from prunus.corrections.journal import Journal, read_journal, status_of
 from prunus.errors import PrunusError
 from prunus.evaluate.edits import edits, on_same_nodes
 from prunus.experiment.edges import NETWORKS, judged_edges
 from prunus.experiment.habits import habits_of
 from prunus.experiment.orchard import Tree
 from prunus.experiment.trial import BY_HAND, Record, as_found, edited
-from prunus.intake import open_scan
+from prunus.intake import Scan, open_scan
 from prunus.io.classes import target_of
 from prunus.io.labels import read_labels
 from prunus.io.original import original_of
-from prunus.io.skeletons import Point, read_record
+from prunus.io.skeletons import Point, SkeletonFile, read_record
 from prunus.learn.labelled import labelled_graphs
 from prunus.model import PointCloud, Skeleton
 from prunus.names import as_text
@@ -57,6 +57,17 @@ class Corrected:
         for path in (self.folder / name for name in FILES):
             held.update(path.read_bytes() if path.is_file() else b"-")
         return held.hexdigest()
+
+    def opened(self) -> tuple[Skeleton, SkeletonFile, Scan, Journal | None]:
+        """The corrected skeleton, frame of the file, what its file says, its scan and journal."""
+        path = self.folder / "corrected.json"
+        gold, record = read_record(path)
+        if record.input is None:
+            raise PrunusError(f"{path}: input: none; expected the scan that it was made from")
+        journal = read_journal(self.folder / JOURNAL)
+        frame, unit = ("auto", None) if journal is None else (journal.head.frame, journal.head.unit)
+        source = original_of(record.input, self.folder, self.scans)
+        return gold, record, open_scan(source, frame, unit), journal
 
     def tree(self) -> Tree:
         """The points that are the tree, and the corrected skeleton as its truth."""
@@ -116,21 +127,13 @@ def _is_done(folder: Path) -> bool:
 
 @lru_cache(maxsize=4)
 def _tree(subject: Corrected) -> Tree:
-    path = subject.folder / "corrected.json"
-    gold, record = read_record(path)
-    if record.input is None:
-        raise PrunusError(f"{path}: input: none; expected the scan that it was made from")
-    journal = read_journal(subject.folder / JOURNAL)
-    frame, unit, base = "auto", None, None
-    if journal is not None:
-        frame, unit, base = journal.head.frame, journal.head.unit, journal.head.base
-    source = original_of(record.input, subject.folder, subject.scans)
-    scan = open_scan(source, frame, unit)
+    gold, record, scan, journal = subject.opened()
+    base = None if journal is None else journal.head.base
     mask = subject.folder / "mask.ply"
     if mask.exists():
         cloud = scan.cloud.take(target_of(mask, len(scan.cloud)))
     else:
-        params = Parameters.parse(record.params or {}, str(path))
+        params = Parameters.parse(record.params or {}, str(subject.folder / "corrected.json"))
         cloud = _isolated(scan.cloud, base, params, record.seed or 0)
     truth = with_nodes_every(gold, STEP)
     habits = habits_of(truth.moved(scan.cloud.to_input.inverse()))

@@ -12,7 +12,7 @@ from prunus.errors import OptionError, PrunusError
 from prunus.io.clouds import WRITTEN, FileCloud, columns_of
 from prunus.io.ply import ply_bytes, read_ply, table_of
 from prunus.io.safely import read_bytes, write_bytes
-from prunus.model import Bools, Kind
+from prunus.model import Bools, Ints, Kind
 
 KINDS = ", ".join(f"{kind.value} {kind.name.lower()}" for kind in Kind)
 """The classes in words, as files have them."""
@@ -31,18 +31,23 @@ def check_ply(path: Path) -> None:
         raise OptionError(f"{path}: classes are written as .ply")
 
 
-def target_of(path: Path, points: int) -> Bools:
-    """Which points (P,) of a scan of so many are the tree.
-
-    PrunusError where the file is none of that scan, or leaves none.
-    """
+def kinds_of(path: Path, points: int) -> Ints:
+    """What each point (P,) of a scan of so many is. PrunusError where the file is none of it."""
     vertex = read_ply(read_bytes(path), path)["vertex"]
     if "kind" not in (vertex.dtype.names or ()) or len(vertex) != points:
         raise PrunusError(
             f"{path}: {len(vertex)} points; expected {points}, each with its `kind`, as "
             "`prunus isolate --classes` writes them"
         )
-    target = np.asarray(vertex["kind"] == Kind.TARGET)
+    return np.asarray(vertex["kind"], np.int64)
+
+
+def target_of(path: Path, points: int) -> Bools:
+    """Which points (P,) of a scan of so many are the tree.
+
+    PrunusError where the file is none of that scan, or leaves none.
+    """
+    target = np.asarray(kinds_of(path, points) == Kind.TARGET)
     if not target.any():
         raise PrunusError(f"{path}: no point of it is the tree; expected some")
     return target

@@ -26,7 +26,7 @@ def start_from(path: Path, net: nn.Module) -> nn.Module:
     The stretch and shift of its calibration are taken into the last layer, so that it says what the
     file says. Raises PrunusError where the file is no network of this kind.
     """
-    graph = _graph(path)
+    graph = onnx_graph(path)
     _load(net, graph, path)
     _take_in(net, *_calibration(graph, path))
     return net
@@ -34,7 +34,7 @@ def start_from(path: Path, net: nn.Module) -> nn.Module:
 
 def go_on_from(path: Path, net: nn.Module) -> None:
     """Give a network that needs no calibration the parameters of an ONNX file."""
-    _load(net, _graph(path), path)
+    _load(net, onnx_graph(path), path)
 
 
 def _load(net: nn.Module, graph: Any, path: Path) -> None:
@@ -51,7 +51,8 @@ def _load(net: nn.Module, graph: Any, path: Path) -> None:
     net.load_state_dict(net.state_dict() | state)
 
 
-def _graph(path: Path) -> Any:
+def onnx_graph(path: Path) -> Any:
+    """The graph of an ONNX file; PrunusError where it is none."""
     try:
         return onnx.load_model_from_string(read_bytes(path)).graph
     except Exception as error:

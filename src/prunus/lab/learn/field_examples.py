@@ -37,9 +37,12 @@ class FieldExample:
     @classmethod
     def of(cls, scan: Scan, rng: np.random.Generator) -> FieldExample:
         """The example of a simulated scan."""
-        truth, count = point_truth(scan), len(scan.xyz)
-        rows = np.sort(rng.choice(count, min(count, MOST_POINTS), replace=False))
-        return cls(xyz=scan.xyz, kind=scan.kind, truth=truth).take(rows)
+        return cls(xyz=scan.xyz, kind=scan.kind, truth=point_truth(scan)).thinned(rng)
+
+    def thinned(self, rng: np.random.Generator) -> FieldExample:
+        """The example of so many points as are kept to learn from."""
+        count = len(self.xyz)
+        return self.take(np.sort(rng.choice(count, min(count, MOST_POINTS), replace=False)))
 
     def take(self, rows: Ints | Bools) -> FieldExample:
         """The example of these points only."""

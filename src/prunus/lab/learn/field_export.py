@@ -1,17 +1,24 @@
-"""The network of the point field as an ONNX file, for any number of voxels."""
+"""The network of the point field as an ONNX file, for any number of voxels, and back."""
 
 from __future__ import annotations
 
 import io
 import warnings
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import torch
+from onnx import numpy_helper
 from torch import Tensor, nn
 
+from prunus.errors import PrunusError
 from prunus.field.network import TABLES
 from prunus.field.voxels import LEVELS, Voxels
 from prunus.lab.learn.field_net import FieldNet, Tables
+from prunus.learn.start import onnx_graph
+
+PREFIX = "net."  # of the names of parameters in a file
 
 
 class _Named(nn.Module):
@@ -47,3 +54,26 @@ def field_onnx(net: FieldNet, example: Voxels) -> bytes:
             dynamic_axes={one: {0: f"rows of {one}"} for one in ("features", *TABLES, "outputs")},
         )  # fmt: skip
     return bytes(held.getvalue())
+
+
+def parameters_of(path: Path, net: FieldNet) -> dict[str, Tensor]:
+    """The parameters for a network in a file that `field_onnx` wrote.
+
+    Raises PrunusError where the file holds no such network.
+    """
+    graph = onnx_graph(path)
+    held = {one.name: numpy_helper.to_array(one) for one in graph.initializer}
+    # Parameters that are alike are kept once.
+    held |= {node.output[0]: held[node.input[0]] for node in graph.node
+             if node.op_type == "Identity" and node.input[0] in held}  # fmt: skip
+    found = {}
+    for name, own in net.state_dict().items():
+        there = held.get(PREFIX + name)
+        if there is None or there.shape != tuple(own.shape):
+            shape = "none" if there is None else list(there.shape)
+            raise PrunusError(
+                f"{path}: parameter {name}: {shape}; expected {list(own.shape)}, as in a network "
+                "that `prunus train --network field` made"
+            )
+        found[name] = torch.from_numpy(np.array(there))
+    return found

@@ -35,6 +35,10 @@ class Tables(NamedTuple):
             tuple(torch.from_numpy(level.children) for level in levels[:-1]),
         )
 
+    def to(self, device: torch.device | None) -> Tables:
+        """The tables on a device."""
+        return Tables(*(tuple(table.to(device) for table in tables) for tables in self))
+
 
 def padded(x: Tensor) -> Tensor:
     """The rows (V, C) and a row of zeros, which stands for an empty voxel."""

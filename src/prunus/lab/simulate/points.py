@@ -12,6 +12,7 @@ from prunus.simulate.scan import Scan
 from prunus.simulate.wood import unit
 
 UNKNOWN_ROLE = -1  # wood of a tree of which no role is known
+UNTOLD = -2  # nobody knows whether it is wood, as of what a person did not draw in a real scan
 SPUR_M = 0.06  # shorter branches are spurs
 
 ROLE_OF_LABEL = np.array([Role.STEM, Role.FRAMEWORK, Role.FRUITING_UNIT, Role.LATERAL])
@@ -21,10 +22,11 @@ ROLE_OF_LABEL = np.array([Role.STEM, Role.FRAMEWORK, Role.FRUITING_UNIT, Role.LA
 class PointTruth:
     """What is true of each of P points.
 
-    role (P,), `UNKNOWN_ROLE` where only its being wood is known; branch (P,), counted over all
-    trees, -1 = none; axis (P, 3), the nearest point of the axis of its branch; radius (P,) there,
-    metres; toward_foot (P, 3), the unit direction of that axis. Where there is no wood the axis
-    is the point itself, and the others are zero.
+    role (P,), `UNKNOWN_ROLE` where only its being wood is known, `UNTOLD` where not even that;
+    branch (P,), counted over all trees, -1 = none, -2 = untold; axis (P, 3), the nearest point of
+    the axis of its branch; radius (P,) there, metres, NaN where it is not known; toward_foot
+    (P, 3), the unit direction of that axis. Where there is no wood the axis is the point itself,
+    and the others are zero.
     """
 
     role: Ints
@@ -45,7 +47,7 @@ def point_truth(scan: Scan) -> PointTruth:
         row = scan.node[own]
         roles, owner = roles_of(tree)
         role[own], branch[own] = roles[row], owner[row] + numbered
-        axis[own] = _on_axis(tree, row, scan.xyz[own])
+        axis[own] = on_axis(tree, row, scan.xyz[own])
         radius[own] = tree.radius[row]
         direction[own] = -unit(tree.edge_vectors[row])
         numbered += owner.max(initial=-1) + 1
@@ -74,7 +76,7 @@ def roles_of(tree: Skeleton) -> tuple[Ints, Ints]:
     return role, owner
 
 
-def _on_axis(tree: Skeleton, row: Ints, xyz: Floats) -> Floats:
+def on_axis(tree: Skeleton, row: Ints, xyz: Floats) -> Floats:
     """The nearest points (P, 3) on the edges that end in rows (P,), and on those next to them.
 
     Noise moves a point along its branch too, past the end of the edge that it was drawn from; so
