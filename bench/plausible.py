@@ -1,17 +1,17 @@
 """`python -m bench.plausible [--trees 22] [--others 4]`: what tells a tree from what is none.
 
 The default chain on simulated scans, of which nothing was learned, and on drawn clouds of what is
-no tree (`bench.nontrees`). Of trees of the wide orchard the points of one alone and the whole scan,
-of our orchard one alone, the whole field scan, one laid on its side, and some with coordinates in
-steps. Printed are a line a cloud
-(what `prunus.plausible` and `prunus.sensing.diagnosis` go by), then quantiles of all numbers: the
-limits there are set by these.
+no tree (`bench.nontrees`). Of trees of the wide orchard the points of one alone, the whole scan,
+and that with a base by hand and nothing taken out; of our orchard the same, one laid on its side,
+and some with coordinates in steps. Printed are a line a cloud (what `prunus.plausible` and
+`prunus.sensing.diagnosis` go by), then quantiles of all numbers: the limits there are set by these.
 """
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,8 +32,18 @@ STEPS = (0.02, 0.04, 0.06)
 """Coordinates are rounded to these, metres."""
 QUANTILES = (0, 0.02, 0.05, 0.1, 0.5, 0.9, 1)
 Record = dict[str, float]
-Drawn = tuple[str, Floats, Bools]
-"""What it is, points (P, 3), and which of them (P,) are the tree."""
+
+
+class Drawn(NamedTuple):
+    """A cloud: what it is, points (P, 3), which of them (P,) are the tree.
+
+    base (3,): given by hand to the whole scan, of which nothing is taken out then.
+    """
+
+    name: str
+    xyz: Floats
+    own: Bools
+    base: Floats | None = None
 
 
 def trees(count: int, wide: int, ours: int) -> Iterator[Drawn]:
@@ -42,17 +52,20 @@ def trees(count: int, wide: int, ours: int) -> Iterator[Drawn]:
         scan = simulate_wide(seed)
         own = scan.kind == Kind.TARGET
         if own.sum() >= SHOWN:
-            yield f"wide alone {seed}", scan.xyz[own], own[own]
-            yield f"wide whole {seed}", scan.xyz, own
+            yield Drawn(f"wide alone {seed}", scan.xyz[own], own[own])
+            yield Drawn(f"wide whole {seed}", scan.xyz, own)
+            yield Drawn(f"wide as it is {seed}", scan.xyz, own, scan.truth.xyz[0])
     for seed in range(ours, ours + count):
         for setting in ("field", "clean"):
             scan = simulate_scan(seed, setting)
             own = scan.kind == Kind.TARGET
             alone = scan.xyz[own]
-            yield f"{setting} alone {seed}", alone, own[own]
+            yield Drawn(f"{setting} alone {seed}", alone, own[own])
             if setting == "field":
-                yield f"field whole {seed}", scan.xyz, own
-                yield f"lying {seed}", alone[:, [(1, 2, 0), (0, 2, 1)][seed % 2]], own[own]
+                turned = alone[:, [(1, 2, 0), (0, 2, 1)][seed % 2]]
+                yield Drawn(f"field whole {seed}", scan.xyz, own)
+                yield Drawn(f"field as it is {seed}", scan.xyz, own, scan.truth.xyz[0])
+                yield Drawn(f"lying {seed}", turned, own[own])
 
 
 def rounded(count: int, ours: int) -> Iterator[Drawn]:
@@ -62,7 +75,7 @@ def rounded(count: int, ours: int) -> Iterator[Drawn]:
         own = scan.kind == Kind.TARGET
         for step in STEPS:
             xyz = np.round(scan.xyz[own] / step) * step
-            yield f"in steps of {step * 100:.0f} cm {seed}", np.asarray(xyz), own[own]
+            yield Drawn(f"in steps of {step * 100:.0f} cm {seed}", np.asarray(xyz), own[own])
 
 
 def others(count: int, seed: int) -> Iterator[Drawn]:
@@ -70,20 +83,21 @@ def others(count: int, seed: int) -> Iterator[Drawn]:
     for name, draw in NO_TREES.items():
         for number in range(seed, seed + count):
             xyz = draw(np.random.default_rng(number))
-            yield f"{name} {number}", xyz, np.zeros(len(xyz), np.bool_)
+            yield Drawn(f"{name} {number}", xyz, np.zeros(len(xyz), np.bool_))
 
 
-def seen(xyz: Floats, own: Bools) -> Record:
+def seen(drawn: Drawn) -> Record:
     """The numbers of a cloud, and whether it is refused."""
-    cloud = PointCloud.from_xyz(xyz)
+    xyz, cloud = drawn.xyz, PointCloud.from_xyz(drawn.xyz)
     off_plane, off_line, _ = spread(xyz)
     record = {"off plane": float(off_plane), "off line": float(off_line), "wood": linear_wood(xyz),
               "spacing": spacing(xyz), "size": float(np.ptp(xyz, axis=0).max())}  # fmt: skip
     try:
-        result = follow(cloud)
+        isolate = "auto" if drawn.base is None else "never"
+        result = follow(cloud, drawn.base, {"isolation": {"isolate": isolate}})
     except PrunusError:
         return record | {"refused": 1.0, "nothing": 1.0}
-    return record | {"nothing": 0.0} | found(result, own)
+    return record | {"nothing": 0.0} | found(result, drawn.own)
 
 
 def found(result: Result, own: Bools) -> Record:
@@ -103,13 +117,13 @@ def found(result: Result, own: Bools) -> Record:
     return record | {"refused": 0.0, "doubts": float(len(evidence.doubts()))}
 
 
-def shown(drawn: Iterator[Drawn]) -> dict[str, list[Record]]:
+def shown(clouds: Iterator[Drawn]) -> dict[str, list[Record]]:
     """The records by what they are of; printed as they come."""
     by: dict[str, list[Record]] = {}
-    for name, xyz, own in drawn:
-        record = seen(xyz, own)
-        by.setdefault(name.rsplit(" ", 1)[0], []).append(record)
-        print(f"{name}:", ", ".join(f"{key} {value:.4g}" for key, value in record.items()),
+    for drawn in clouds:
+        record = seen(drawn)
+        by.setdefault(drawn.name.rsplit(" ", 1)[0], []).append(record)
+        print(f"{drawn.name}:", ", ".join(f"{key} {value:.4g}" for key, value in record.items()),
               flush=True)  # fmt: skip
     return by
 

@@ -136,7 +136,14 @@ def test_small_steps_are_noted(tmp_path: Path, far: float, step: str) -> None:
 
 @pytest.mark.parametrize(
     "xyz",
-    [XYZ.astype(np.float32), (XYZ + 5000).astype(np.float32), np.round(XYZ, 3), XYZ * [1, 1, 0]],
+    [
+        XYZ.astype(np.float32),
+        (XYZ + 5000).astype(np.float32),
+        np.round(XYZ, 3),
+        XYZ * [1, 1, 0],
+        XYZ * [0.03, 0.02, 1],
+        XYZ * [0.03, 1, 0.002] + [0, 0, 12],
+    ],
 )
 def test_fine_coordinates_have_no_note(tmp_path: Path, xyz: np.ndarray) -> None:
     cloud = noted(tmp_path, xyz)

@@ -56,5 +56,6 @@ def test_steps_spacing_and_spread_are_what_they_are() -> None:
     grid = np.stack(np.meshgrid(*[np.arange(8) * 0.03] * 3), axis=-1).reshape(-1, 3)
     assert coarseness(PointCloud.from_xyz(grid)) == pytest.approx(0.03)
     assert coarseness(PointCloud.from_xyz(rods(2))) < 1e-3
+    assert coarseness(PointCloud.from_xyz(rods(2) * [0.03, 0.03, 1])) < 1e-3  # slender, at 0
     assert 0.03 <= spacing(grid) < 0.03 * 2**0.5
     assert spread(np.array([[0.0, 0, 0], [2, 0, 0]])).tolist() == [0, 0, 1]

@@ -19,6 +19,8 @@ APART = 3
 OFF, MOST_ON = 0.1, 0.98
 """On a grid lies what is off by less of its step; so many numbers do, as a few may be of another
 kind."""
+SPLIT = 2
+"""Numbers at one place of a grid may be told as so many."""
 
 
 def step_of(values: Floats) -> tuple[float, bool]:
@@ -49,8 +51,9 @@ def _rounded(values: Floats) -> list[float]:
 
 
 def _on_grid(values: Floats, step: float) -> bool:
-    counts = values / step
-    places = np.round(counts)
-    # What all lies about one place of a grid says nothing of its steps.
-    many = len(np.unique(places)) >= APART
-    return bool(many and np.mean(np.abs(counts - places) < OFF) > MOST_ON)
+    """Whether numbers lie at multiples of a step, and not just about one, as what is thin does."""
+    count = np.round(values / step)
+    on = np.abs(values / step - count) < OFF
+    if on.mean() <= MOST_ON:
+        return False
+    return len(np.unique(np.round(values[on], DIGITS))) <= SPLIT * len(np.unique(count[on]))
