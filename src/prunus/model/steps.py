@@ -15,7 +15,7 @@ DECIMAL = (1.0, 0.1, 0.01, 0.001)
 DIGITS = 4
 """Numbers that are the same to so many digits are one."""
 APART = 3
-"""Of fewer places or differences only the step of single precision is told: it is known before."""
+"""Of fewer differences only the step of single precision is told: it is known before."""
 OFF, MOST_ON = 0.1, 0.98
 """On a grid lies what is off by less of its step; so many numbers do, as a few may be of another
 kind."""
