@@ -31,7 +31,7 @@ def child(*words: object, **options: Any) -> Iterator[Child]:
     """
     command = [sys.executable, *map(str, words)]
     options = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True} | options
-    with hearing_ctrl_c():
+    with hearing_signals():
         started = subprocess.Popen(command, start_new_session=True, **options)
     with started as process:
         try:
@@ -41,16 +41,21 @@ def child(*words: object, **options: Any) -> Iterator[Child]:
 
 
 @contextmanager
-def hearing_ctrl_c() -> Iterator[None]:
-    """Children that begin here hear SIGINT, also where tests run in the background of a shell.
+def hearing_signals() -> Iterator[None]:
+    """Children that begin here hear SIGINT and SIGHUP, also where tests run in the background.
 
-    A signal that is ignored would be so in them too; one that is handled is theirs to handle.
+    Shells make what runs there ignore the one, nohup the other. A signal that is ignored would be
+    so in children too; one that is handled is theirs to handle.
     """
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    numbers = [signal.SIGINT, *([signal.SIGHUP] if os.name == "posix" else [])]
+    before = {number: signal.getsignal(number) for number in numbers}
+    for number in numbers:
+        signal.signal(number, signal.default_int_handler)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def prunus(*words: object, **options: Any) -> contextlib.AbstractContextManager[Child]:
