@@ -113,4 +113,4 @@ def _read(name: str) -> dict[str, Any]:
 
 
 def _changed(groups: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
-    return {name: values | changes.get(name, {}) for name, values in groups.items()}
+    return groups | {name: groups[name] | values for name, values in changes.items()}
