@@ -154,7 +154,7 @@ def test_an_ordinary_tree_is_as_the_paper_describes_it(seed: int) -> None:
 
 def test_ordinary_trees_are_scanned_in_a_row_with_all_its_faults() -> None:
     scan = simulate_scan(11, "ordinary")
-    assert {Kind.TARGET, Kind.NEIGHBOUR, Kind.GROUND, Kind.WIRE} <= set(np.unique(scan.kind))
+    assert {Kind.TARGET, Kind.BEHIND, Kind.GROUND, Kind.WIRE} <= set(np.unique(scan.kind))
     assert scan.truth.xyz[0, 2] > 0.01  # the lowest wood is hidden, as in the real scan
 
 
