@@ -266,7 +266,7 @@ def main() -> None:
     parser.add_argument("--why", action="store_true")
     chosen = parser.parse_args()
     rules = CutRules.from_toml(chosen.rules) if chosen.rules else shipped_rules()
-    settings: tuple[Setting, ...] = ("clean", "field")
+    settings: tuple[Setting, ...] = ("clean", "hard")
     seeds = range(chosen.seed, chosen.seed + chosen.trees)
     for setting in settings:
         topologies = ("true topology", "chain")

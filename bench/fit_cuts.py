@@ -23,7 +23,7 @@ from prunus.simulate.settings import Setting
 
 OFF = 0.03
 """A cut that is farther off along its branch is not right here, metres."""
-SETTINGS: tuple[Setting, ...] = ("field", "clean")
+SETTINGS: tuple[Setting, ...] = ("hard", "clean")
 FOLDS = 8
 Told = dict[str, float]
 LIMITS = (0.5, 0.7, 0.8, 0.85, 0.9, 0.91, 0.92, 0.93, 0.94, 0.945, 0.95, 0.955, 0.96, 0.97)
@@ -61,7 +61,7 @@ def main() -> None:
     rules, settings = shipped_rules(), SETTINGS
     cuts = {s: [(n, one) for n in seeds for one in outcomes(n, s, rules)[0].planned]
             for s in settings}  # fmt: skip
-    text = written(cuts["field"], cuts["field"] + cuts["clean"])
+    text = written(cuts["hard"], cuts["hard"] + cuts["clean"])
     print(text)
     if chosen.write:
         write_bytes(SHIPPED, text.encode())

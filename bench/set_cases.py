@@ -57,13 +57,13 @@ class TreeSet:
 
 
 def hard(seed: int) -> Scan:
-    """The scan of the field setting."""
-    return simulate_scan(seed, "field")
+    """The scan of the hard setting."""
+    return simulate_scan(seed, "hard")
 
 
 def ordinary(seed: int) -> Scan:
-    """The scan of the clean setting, until there is one of the paper's own orchard."""
-    return simulate_scan(seed, "clean")
+    """The scan of the paper's own orchard."""
+    return simulate_scan(seed, "ordinary")
 
 
 SETS = {
@@ -72,9 +72,9 @@ SETS = {
         "the same one-sided, 4 mm, 25 holes, two wires, strays", one_side, 0, 8, raw=True
     ),
     "ordinary": TreeSet(
-        "simulate_scan 'clean', which stands in for `ordinary`; the tree alone", ordinary, 900_000
+        "simulate_scan 'ordinary'; the tree's own points, cut out by hand", ordinary, 900_000
     ),
-    "hard": TreeSet("simulate_scan 'field'; the tree's own points, cut out by hand", hard, 900_000),
+    "hard": TreeSet("simulate_scan 'hard'; the tree's own points, cut out by hand", hard, 900_000),
     "hard_raw": TreeSet("the same rows, nothing cut out", hard, 900_000, raw=True),
     "any": TreeSet("simulate_wide; the tree's own points", simulate_wide, 1_000_000),
     "any_raw": TreeSet("the same, nothing cut out", simulate_wide, 1_000_000, raw=True),

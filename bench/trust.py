@@ -32,7 +32,7 @@ from prunus.search.judged import judged
 from prunus.simulate.scan import simulate_scan
 from prunus.simulate.settings import Setting
 
-CASES: tuple[tuple[Setting, bool], ...] = (("field", True), ("field", False), ("clean", True))
+CASES: tuple[tuple[Setting, bool], ...] = (("hard", True), ("hard", False), ("clean", True))
 """Settings, and whether the scan is given raw, with no base."""
 
 

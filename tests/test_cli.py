@@ -480,7 +480,7 @@ def test_other_scorers_can_be_asked_for(words: list[str], scan: Path, tmp_path: 
 
 @pytest.fixture(scope="module")
 def raw(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return simulate_tree(tmp_path_factory.mktemp("row"), 500_000, "field", views=False) / "scan.ply"
+    return simulate_tree(tmp_path_factory.mktemp("row"), 500_000, "hard", views=False) / "scan.ply"
 
 
 def test_one_tree_is_taken_out_of_a_raw_scan(raw: Path, tmp_path: Path) -> None:

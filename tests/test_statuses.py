@@ -59,6 +59,7 @@ BROKEN_FILE_OF_AN_OPTION = [
     "train orchard -o w.onnx --network isolation --from bad.json",
 ]  # fmt: skip
 BAD_VALUE = [
+    "simulate -o e --scan any --views",
     "skeletonize cloud.xyz --points few", "skeletonize cloud.xyz --points 0",
     "skeletonize cloud.xyz --frame up", "skeletonize cloud.xyz --unit furlong",
     "skeletonize cloud.xyz --seed -1", "skeletonize cloud.xyz --base 1 2",

@@ -30,7 +30,7 @@ from prunus.simulate.orchard import simulate_tree
 def orchard(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("orchard")
     for seed in range(5):
-        simulate_tree(folder, seed, "field", views=False)
+        simulate_tree(folder, seed, "hard", views=False)
     return folder
 
 

@@ -116,7 +116,7 @@ def test_a_folder_of_scans_gives_weights_and_tables(
     monkeypatch.setattr(examples_of, "POINTS", (8_000, 12_000))
     monkeypatch.setattr(examples_of, "GRAPHS", 1)
     for seed in range(5):
-        simulate_tree(tmp_path / "orchard", seed, "field", views=False)
+        simulate_tree(tmp_path / "orchard", seed, "hard", views=False)
     weights = tmp_path / "mine.onnx"
     report = school([tmp_path / "orchard"], weights, Course(epochs=1), 1, silently)
     assert report["trees"] == [3, 1, 1]

@@ -208,7 +208,7 @@ def test_a_tree_comes_much_nearer_to_the_truth(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", [0, 1])
 def test_branches_taper_outward(seed: int) -> None:
-    rough, cloud, _ = rough_tree(seed, "field")
+    rough, cloud, _ = rough_tree(seed, "hard")
     found = refined(rough, cloud)
     for branch in branches(found.skeleton):
         radius = found.skeleton.radius[branch.rows[1:]]

@@ -12,6 +12,7 @@ from prunus.model import Kind, Label
 from prunus.rules import junctions, label_linearity, label_progression, one_trunk_at_base
 from prunus.simulate import Habits, grow_tree, simulate_scan, ufo_habits
 from prunus.simulate.orchard import write_simulated
+from prunus.simulate.settings import habits_in, scan_settings
 from tests.conftest import field_scan
 
 
@@ -133,6 +134,41 @@ def test_a_clean_scan_holds_the_target_alone_close_to_its_surface() -> None:
     tree = scan.row.trees[0]
     away = np.linalg.norm(scan.xyz - tree.xyz[scan.node], axis=1)
     assert np.quantile(away - tree.radius[scan.node], 0.95) < 0.016
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_an_ordinary_tree_is_as_the_paper_describes_it(seed: int) -> None:
+    tree = grown(seed, habits_in("ordinary"))
+    leaders, supports = branches(tree, Label.LEADER), branches(tree, Label.SUPPORT)
+    assert 5 <= len(leaders) <= 12 and len(supports) in (1, 2)
+    assert not label_linearity(*junctions(tree)).any()
+    for arm in supports:
+        rise = np.ptp(tree.xyz[arm.rows[[len(arm.rows) // 3, -1]], 2])
+        assert rise < 0.45 * arm.length
+    for leader in leaders:
+        foot, top = tree.xyz[leader.rows[0]], tree.xyz[leader.rows[-1]]
+        assert top[2] - foot[2] > 0.8 * np.linalg.norm(top - foot)
+    thin = [b for b in branches(tree, Label.SIDE_BRANCH) if tree.label[b.rows[0]] == Label.LEADER]
+    assert max(b.length for b in thin) < 0.4
+
+
+def test_ordinary_trees_are_scanned_in_a_row_with_all_its_faults() -> None:
+    scan = simulate_scan(11, "ordinary")
+    assert {Kind.TARGET, Kind.BEHIND, Kind.GROUND, Kind.WIRE} <= set(np.unique(scan.kind))
+    assert scan.truth.xyz[0, 2] > 0.01  # the lowest wood is hidden, as in the real scan
+
+
+def test_only_what_is_said_of_the_ordinary_differs_from_the_hard() -> None:
+    hard, ordinary = scan_settings("hard"), scan_settings("ordinary")
+    assert (ordinary.rig, ordinary.stereo) == (hard.rig, hard.stereo)
+    assert habits_in("clean") == habits_in("hard") == ufo_habits()
+    assert habits_in("ordinary").spur == ufo_habits().spur
+    assert habits_in("ordinary").leader.crosses == 0 < ufo_habits().leader.crosses
+
+
+def test_field_is_another_name_of_hard() -> None:
+    assert scan_settings("field") == scan_settings("hard")
+    assert habits_in("field") == habits_in("hard")
 
 
 def test_depth_images_give_the_cloud_back() -> None:

@@ -85,7 +85,7 @@ class Simulated:
 
 
 @lru_cache(maxsize=4)
-def tree_of(seed: int, setting: Setting = "field") -> Tree:
+def tree_of(seed: int, setting: Setting = "hard") -> Tree:
     """The target of the scan of that seed."""
     return target_of(simulate_scan(seed, setting), f"tree_{seed}")
 

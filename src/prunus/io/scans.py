@@ -41,11 +41,16 @@ def write_scan(folder: Path, xyz: Floats, truth: dict[str, Ints], trees: list[Sk
     columns: dict[str, Any] = {
         name: xyz[:, axis].astype(np.float32) for axis, name in enumerate("xyz")
     }
-    columns |= {name: values.astype(np.int16) for name, values in truth.items()}
+    columns |= {name: values.astype(_width_of(values)) for name, values in truth.items()}
     words = ", ".join(f"{kind.value} {kind.name.lower()}" for kind in Kind)
     comments = [f"kind: {words}", "label: 0 trunk, 1 support, 2 leader, 3 side branch, -1 none"]
     write_bytes(folder / "scan.ply", ply_bytes({"vertex": table_of(columns)}, comments))
     write_bytes(folder / "trees.npz", _trees_bytes(trees))
+
+
+def _width_of(values: Ints) -> type[np.signedinteger[Any]]:
+    """The least type that holds the values: furred trees have branches by the thousand."""
+    return np.int16 if values.max(initial=0) <= np.iinfo(np.int16).max else np.int32
 
 
 def read_scan(folder: Path) -> ScannedTree:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -29,17 +29,20 @@ MILLIMETRE = 1e-3
 
 
 def simulate_orchard(
-    folder: Path, seeds: range, setting: Setting, views: bool, jobs: int
+    folder: Path, seeds: range, scan: Callable[[int], Scan], views: bool, jobs: int
 ) -> Iterator[Path]:
-    """Simulate and write one tree a seed; the folders as they are done."""
-    make = partial(simulate_tree, folder, setting=setting, views=views)
-    yield from in_order(make, seeds, jobs)
+    """Write what `scan` makes of each seed, one tree a seed; the folders as they are done."""
+    yield from in_order(partial(_scanned, folder, scan, views), seeds, jobs)
 
 
 def simulate_tree(folder: Path, seed: int, setting: Setting, views: bool) -> Path:
     """Simulate the tree of a seed and write it below the folder; its own folder."""
+    return _scanned(folder, partial(simulate_scan, setting=setting), views, seed)
+
+
+def _scanned(folder: Path, scan: Callable[[int], Scan], views: bool, seed: int) -> Path:
     own = folder / f"tree_{seed:06d}"
-    write_simulated(own, simulate_scan(seed, setting), views)
+    write_simulated(own, scan(seed), views)
     return own
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from prunus.model import Floats, Ints, Kind, Label, RigidMotion, Skeleton
 from prunus.simulate.grow import draw_sides, grow_tree
-from prunus.simulate.habits import ufo_habits
+from prunus.simulate.habits import Habits
 from prunus.simulate.settings import RowSettings
 
 NONE = -1
@@ -53,20 +53,20 @@ class Row:
     pieces: Pieces
 
 
-def plant_row(rng: np.random.Generator, settings: RowSettings) -> Row:
+def plant_row(rng: np.random.Generator, settings: RowSettings, habits: Habits) -> Row:
     """A row from a random generator: the target's trunk meets the ground at the origin."""
     side = -1.0 if rng.random() < settings.towards else 1.0
     low, high = settings.lean
     lean = side * math.radians(rng.triangular(low, (low + high) / 2, high))
     spacing = rng.uniform(*settings.spacing)
-    sides = draw_sides(rng, ufo_habits())
+    sides = draw_sides(rng, habits)
     trees: list[Skeleton] = []
     parts: list[Pieces] = []
     for kind, arm, at in _places(rng, settings, spacing):
         angle = arm * lean + math.radians(rng.uniform(*settings.lean_varies))
         like = sides if rng.random() < settings.alike else ()
         room = spacing * rng.uniform(*settings.room) if spacing else math.inf
-        grown = grow_tree(rng, lean=angle, sides=like, room=room)
+        grown = grow_tree(rng, habits, lean=angle, sides=like, room=room)
         tree = grown.moved(RigidMotion(np.eye(3), at))
         parts.append(wood_of(tree, kind, len(trees)))
         trees.append(tree)

@@ -16,7 +16,7 @@ from prunus.kernels.depth import GROUND, NOTHING, draw_ground, draw_wood, points
 from prunus.model import Bools, Floats, Ints, Kind, Label, PointCloud, RigidMotion, Skeleton
 from prunus.model.arrays import cubes
 from prunus.simulate.row import NONE, Pieces, Row, plant_row
-from prunus.simulate.settings import RigSettings, ScanSettings, Setting, scan_settings
+from prunus.simulate.settings import RigSettings, ScanSettings, Setting, habits_in, scan_settings
 from prunus.simulate.stereo import focal_length, hold_of, matched
 
 CELL = 0.04
@@ -74,11 +74,11 @@ class Scan:
         return self.cloud((Kind.TARGET,))
 
 
-def simulate_scan(seed: int, setting: Setting = "field") -> Scan:
+def simulate_scan(seed: int, setting: Setting = "hard") -> Scan:
     """The scan of that seed: the same seed and setting give the same scan."""
     rng = np.random.default_rng([seed, 0])
     settings = scan_settings(setting)
-    row = plant_row(rng, settings.row)
+    row = plant_row(rng, settings.row, habits_in(setting))
     return scan_row(row, rng, settings)
 
 

@@ -1,15 +1,20 @@
-"""The settings of a simulated scan: `field` and `clean`, read from a documented TOML file."""
+"""The settings of simulated scans: the paper's own orchard, a hard one, and clean scans of that.
+
+`hard` is `habits.toml` and `scan.toml`; `clean` the same trees, hardly disturbed (`scan.toml`);
+`ordinary` what `ordinary.toml` changes of `hard`.
+"""
 
 from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from prunus.reading import read_toml
-from prunus.simulate.habits import Group, Range
+from prunus.simulate.habits import Group, Habits, Range, ufo_habits
 
-Setting = Literal["field", "clean"]
+Setting = Literal["ordinary", "hard", "clean", "field"]
+"""`field` is an older name of `hard`."""
 
 
 class RowSettings(Group):
@@ -84,7 +89,28 @@ class ScanSettings(Group):
 
 
 @cache
-def scan_settings(name: Setting = "field") -> ScanSettings:
-    """The settings of that name."""
-    path = Path(__file__).with_name("scan.toml")
-    return ScanSettings.model_validate(read_toml(path)[name])
+def scan_settings(name: Setting = "hard") -> ScanSettings:
+    """How the rows of that setting are scanned."""
+    settings = _read("scan.toml")
+    if name == "ordinary":
+        return ScanSettings.model_validate(
+            _changed(settings["hard"], _read("ordinary.toml")["scan"])
+        )
+    return ScanSettings.model_validate(settings["hard" if name == "field" else name])
+
+
+@cache
+def habits_in(name: Setting = "hard") -> Habits:
+    """The habits of the trees of that setting."""
+    if name != "ordinary":
+        return ufo_habits()
+    changes = _read("ordinary.toml")["habits"]
+    return Habits.model_validate(_changed(ufo_habits().model_dump(), changes))
+
+
+def _read(name: str) -> dict[str, Any]:
+    return read_toml(Path(__file__).with_name(name))
+
+
+def _changed(groups: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
+    return groups | {name: groups[name] | values for name, values in changes.items()}

@@ -1,15 +1,17 @@
 import numpy as np
 import pytest
 
+from prunus.io.scans import read_scan
 from prunus.lab.simulate.general import grow_general
 from prunus.lab.simulate.plant import plant_wide
-from prunus.lab.simulate.points import UNKNOWN_ROLE, point_truth, roles_of
+from prunus.lab.simulate.points import UNKNOWN_ROLE, point_truth, roles_of, written_truth
 from prunus.lab.simulate.scanners import scan_with
 from prunus.lab.simulate.settings import wide_orchard
 from prunus.lab.simulate.surface import sample_pieces
 from prunus.lab.simulate.ufo import grow_wide_ufo, wide_habits
 from prunus.lab.simulate.wide import simulate_wide
 from prunus.model import Kind, Label, Role
+from prunus.simulate.orchard import write_simulated
 
 SEED_NOT_OF_THE_RIG = 7
 
@@ -32,6 +34,21 @@ def test_wood_lies_around_its_axis_and_the_rest_has_none(scan):
     assert np.median(np.abs(off - truth.radius)[wood]) < 0.015
     assert (off[~wood] == 0).all()
     assert np.linalg.norm(truth.toward_foot[wood], axis=1) == pytest.approx(1)
+
+
+def test_a_written_scan_tells_the_truth_of_its_points(scan, tmp_path):
+    write_simulated(tmp_path, scan)
+    read, ours = written_truth(read_scan(tmp_path)), point_truth(scan)
+    wood = scan.tree >= 0
+    assert np.array_equal(read.role, ours.role) and np.array_equal(read.branch, ours.branch)
+    assert (read.role[~wood] == Role.NO_WOOD).all()
+    apart = np.linalg.norm(read.axis - ours.axis, axis=1)[wood]
+    assert np.median(apart) < 1e-3 and np.quantile(apart, 0.95) < 0.04
+    assert np.quantile(np.abs(read.radius - ours.radius)[wood], 0.95) < 0.002
+    assert np.median((read.toward_foot * ours.toward_foot).sum(axis=1)[wood]) > 0.99
+    # The nearest edge of the right branch is nearer than the edge that noise left behind.
+    off = [np.linalg.norm(t.axis - scan.xyz, axis=1)[wood] for t in (read, ours)]
+    assert off[0].mean() <= off[1].mean() + 1e-3
 
 
 @pytest.mark.parametrize("seed", range(6))

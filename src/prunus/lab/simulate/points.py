@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
+from prunus.io.scans import ScannedTree
 from prunus.measure import branch_of_rows, branches
 from prunus.model import Floats, Ints, Label, Role, Skeleton
+from prunus.simulate.row import NONE
 from prunus.simulate.scan import Scan
 from prunus.simulate.wood import unit
 
@@ -38,16 +41,46 @@ class PointTruth:
 
 def point_truth(scan: Scan) -> PointTruth:
     """The truth of the points of a scan, wood of neighbours included."""
-    count = len(scan.xyz)
-    role, branch = np.full(count, int(Role.NO_WOOD)), np.full(count, -1)
-    axis, radius, direction = scan.xyz.copy(), np.zeros(count), np.zeros((count, 3))
-    numbered = 0
-    for number, tree in enumerate(scan.row.trees):
+    return _truth(scan.xyz, scan.tree, scan.node, scan.row.trees)
+
+
+def written_truth(scan: ScannedTree) -> PointTruth:
+    """The same of a scan that was written and read back.
+
+    The files tell the branch of a point, not the edge that it was drawn from. The nearest edge of
+    the branch stands for it: one or two away, 2 cm each, where noise moved the point along.
+    """
+    node = np.full(len(scan.xyz), NONE)
+    for number, tree in enumerate(scan.trees):
         own = np.flatnonzero(scan.tree == number)
-        row = scan.node[own]
+        node[own] = _nearest_rows(tree, scan.branch[own], scan.xyz[own])
+    return _truth(scan.xyz, scan.tree, node, scan.trees)
+
+
+def _nearest_rows(tree: Skeleton, branch: Ints, xyz: Floats) -> Ints:
+    """The row of each point (P, 3): the edge of its branch whose middle is the nearest."""
+    row = np.zeros(len(xyz), np.int64)
+    middle = (tree.xyz + tree.xyz[np.maximum(tree.parent, 0)]) / 2
+    for number, one in enumerate(branches(tree)):
+        own = np.flatnonzero(branch == number)
+        if len(own):
+            rows = one.rows[1:]
+            row[own] = rows[cKDTree(middle[rows]).query(xyz[own])[1]]
+    return row
+
+
+def _truth(xyz: Floats, whose: Ints, node: Ints, trees: list[Skeleton]) -> PointTruth:
+    """Of points (P, 3) of trees (P,) and rows of these (P,), -1 = no wood."""
+    count = len(xyz)
+    role, branch = np.full(count, int(Role.NO_WOOD)), np.full(count, -1)
+    axis, radius, direction = xyz.copy(), np.zeros(count), np.zeros((count, 3))
+    numbered = 0
+    for number, tree in enumerate(trees):
+        own = np.flatnonzero(whose == number)
+        row = node[own]
         roles, owner = roles_of(tree)
         role[own], branch[own] = roles[row], owner[row] + numbered
-        axis[own] = on_axis(tree, row, scan.xyz[own])
+        axis[own] = on_axis(tree, row, xyz[own])
         radius[own] = tree.radius[row]
         direction[own] = -unit(tree.edge_vectors[row])
         numbered += owner.max(initial=-1) + 1

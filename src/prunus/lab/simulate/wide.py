@@ -27,7 +27,7 @@ def simulate_wide(seed: int) -> Scan:
     row = plant_wide(rng, orchard)
     name = chosen(rng, {name: scanner.share for name, scanner in orchard.scanner.items()})
     if name == "rig":
-        return scan_row(row, rng, scan_settings("field" if happens(rng, FIELD_SHARE) else "clean"))
+        return scan_row(row, rng, scan_settings("hard" if happens(rng, FIELD_SHARE) else "clean"))
     surface = sample_pieces(rng, row.pieces, SPACING_M)
     soil = loose(ground_points(rng, orchard.around, row, GROUND_SPACING_M), SOIL)
     surface = surface.joined(soil)
