@@ -482,7 +482,8 @@ def simulate(
 
     if views and scan == ScanKind.ANY:
         raise OptionError("--views: only of the rig; expected --scan ordinary, hard or clean")
-    make = simulate_wide if scan == ScanKind.ANY else partial(simulate_scan, setting=scan.value)
+    setting: Any = scan.value
+    make = simulate_wide if scan == ScanKind.ANY else partial(simulate_scan, setting=setting)
     waiting: Waiting = ctx.obj
     made = simulate_orchard(output, range(seed, seed + trees), make, views, min(jobs, trees))
     for _ in waiting.watch(made, "trees", trees):
