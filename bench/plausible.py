@@ -56,15 +56,15 @@ def trees(count: int, wide: int, ours: int) -> Iterator[Drawn]:
             yield Drawn(f"wide whole {seed}", scan.xyz, own)
             yield Drawn(f"wide as it is {seed}", scan.xyz, own, scan.truth.xyz[0])
     for seed in range(ours, ours + count):
-        for setting in ("field", "clean"):
+        for setting in ("hard", "clean"):
             scan = simulate_scan(seed, setting)
             own = scan.kind == Kind.TARGET
             alone = scan.xyz[own]
             yield Drawn(f"{setting} alone {seed}", alone, own[own])
-            if setting == "field":
+            if setting == "hard":
                 turned = alone[:, [(1, 2, 0), (0, 2, 1)][seed % 2]]
-                yield Drawn(f"field whole {seed}", scan.xyz, own)
-                yield Drawn(f"field as it is {seed}", scan.xyz, own, scan.truth.xyz[0])
+                yield Drawn(f"hard whole {seed}", scan.xyz, own)
+                yield Drawn(f"hard as it is {seed}", scan.xyz, own, scan.truth.xyz[0])
                 yield Drawn(f"lying {seed}", turned, own[own])
 
 

@@ -46,7 +46,7 @@ class Made:
         """The scan."""
         if self.orchard == "wide":
             return simulate_wide(self.seed)
-        return simulate_scan(self.seed, "clean" if self.clean else "field")
+        return simulate_scan(self.seed, "clean" if self.clean else "hard")
 
 
 def examples_to_make(folder: Path, scans: Scans) -> list[Made]:
