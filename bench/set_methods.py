@@ -7,16 +7,11 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from prunus import skeletonize
 from prunus.errors import PrunusError
-from prunus.field.network import see_field
-from prunus.field.votes import gather_votes
-from prunus.field.voxels import voxels_of
-from prunus.growth.grow import grow
 from prunus.model import Bools, Floats, PointCloud, Skeleton
 from prunus.params import Parameters
 
@@ -49,31 +44,17 @@ def _skeletonized(cloud: PointCloud, base: Floats | None, params: Parameters) ->
     return Found(result.skeleton, every if result.isolated is None else result.isolated.target)
 
 
-def grown(field: Path) -> Method:
-    """Votes of the network in a file, and the tree that grows on them."""
-    if not field.exists():
-        sys.exit(f"bench.sets: {field}: no network of the point field; --field names one")
-
-    def method(cloud: PointCloud, base: Floats | None) -> Skeleton:
-        at = None if base is None else cloud.to_input.inverse().apply(base)
-        threads = gather_votes(see_field(voxels_of(cloud.xyz), field))
-        return grow(threads, at).moved(cloud.to_input)
-
-    return method
+def _growth(cloud: PointCloud, base: Floats | None) -> Found:
+    return _skeletonized(cloud, base, Parameters.growth())
 
 
-METHODS: dict[str, Callable[[Path], Method]] = {
-    "default": lambda _: _default,
-    "paper": lambda _: _paper,
-    "grown": grown,
-}
-"""By name, what makes each of the file of a field network."""
+METHODS: dict[str, Method] = {"default": _default, "paper": _paper, "growth": _growth}
 
 
-def method_of(name: str, field: Path) -> Method:
+def method_of(name: str) -> Method:
     """A method of the table, or any `module:function` of cloud and base."""
     if name in METHODS:
-        return METHODS[name](field)
+        return METHODS[name]
     if ":" not in name:
         sys.exit(
             f"bench.sets: unknown method {name!r}; expected {', '.join(METHODS)} or m:function"

@@ -2,7 +2,7 @@
 
 Each set is of another kind of tree or scan, so that a claim stands for each apart; `measured` are
 trees that people measured, for testing only (`--measured FOLDER`, see `bench.set_measured`).
-Methods are `default`, `paper`, `grown`, or any `module:function` that takes a `PointCloud` and a
+Methods are `default`, `paper`, `growth`, or any `module:function` that takes a `PointCloud` and a
 base or None. Cases are kept in the `--cache` folder; a rerun costs only the methods.
 
 A2 and geometry ratio: `prunus.evaluate.by_length`. Found branches are of those that the scan shows.
@@ -24,7 +24,6 @@ from bench.set_cases import SETS, Case, case_of
 from bench.set_figures import Figures, figures_of, lines_of
 from bench.set_measured import Measured, measured_figures, measured_in, measured_lines
 from bench.set_methods import METHODS, Found, Method, method_of, tried
-from prunus.field.network import SHIPPED
 from prunus.model import Floats
 
 MEASURED = "measured"
@@ -36,7 +35,7 @@ Told = Callable[[list[Figures]], dict[str, str]]
 def main() -> None:
     """Measure, and print a table a set as it is done."""
     chosen = _options()
-    methods = {name: method_of(name, chosen.field) for name in chosen.method}
+    methods = {name: method_of(name) for name in chosen.method}
     _warm(methods)
     for name in chosen.set or [*USUAL, *([MEASURED] if chosen.measured else [])]:
         if name == MEASURED:
@@ -64,7 +63,6 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--base", action="store_true", help="give every method the true base")
     parser.add_argument("--cache", type=Path, help="the folder in which cases are kept")
     parser.add_argument("--measured", type=Path, help="the folder of measured trees")
-    parser.add_argument("--field", type=Path, default=SHIPPED, help="the network of `grown`")
     return parser.parse_args()
 
 

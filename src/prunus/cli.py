@@ -140,7 +140,7 @@ Points = Annotated[
 ]
 ParamsFile = Annotated[
     Path | None,
-    typer.Option("--params", help="TOML as `prunus params` prints it; 'paper': as the paper."),
+    typer.Option("--params", help="TOML as `prunus params` prints it; or 'paper', 'growth'."),
 ]
 Weights = Annotated[
     Path | None,

@@ -71,12 +71,12 @@ def grow_tree(
         raw = {"auto": raw, "always": True, "never": False}[params.isolation.isolate]
         mine = np.ones(len(drawn), np.bool_)
         if raw:
-            mine = _kinds(drawn, voxels, orchard) == Kind.TARGET
+            mine = orchard.foot_of_voxel()[voxels.of_point] == orchard.main
         graph = seeded_graph(drawn.take(mine), voxels.of_point[mine], voxels.xyz, orchard)
     if raw:
         notes.append(isolated.told())
     if at is None:
-        place = _shown(cloud.to_input.apply(skeleton.xyz[0]))
+        place = cloud.words_for(skeleton.xyz[0])
         notes.append(f"no base was given: the foot of the trunk was found at {place}")
     return Grown(skeleton=skeleton, graph=graph, isolated=isolated if raw else None, notes=notes)
 
@@ -94,7 +94,7 @@ def _on_wood(
         return threads.xyz[nearest], []
     beside = np.linalg.norm(away[:, :2], axis=1)
     above = np.flatnonzero((beside <= BASE_REACH_M) & (away[:, 2] > 0) & (away[:, 2] <= WEEDS_M))
-    shown = _shown(cloud.to_input.apply(at))
+    shown = cloud.words_for(at)
     if len(above) == 0:
         raise PrunusError(
             f"the base {shown} is {distance[nearest]:.2f} m from the nearest wood; expected at "
@@ -117,7 +117,3 @@ def _kinds(cloud: PointCloud, voxels: Voxels, orchard: Orchard) -> Ints:
     low = cloud.xyz[:, 2] < base[2] + GROUND_M
     kind[foot < 0] = np.where(low, int(Kind.GROUND), int(Kind.STRAY))[foot < 0]
     return kind
-
-
-def _shown(place: Floats) -> str:
-    return "(" + ", ".join(f"{value:.2f}" for value in place) + ")"

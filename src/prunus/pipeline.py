@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from prunus.errors import NoTreeError, PrunusError
-from prunus.grown import grow_tree
 from prunus.measure import remarks
 from prunus.model import Floats, PointCloud, ScoredGraph, SeededGraph, Skeleton
 from prunus.model.arrays import frozen
@@ -94,8 +93,8 @@ def follow(
         notes += told
         seeded, warnings = find_seeds(hoped, params, foot if at is None else at)
     if foot is not None:
-        place = ", ".join(f"{value:.2f}" for value in cloud.to_input.apply(foot))
-        notes.append(f"no base was given: the foot of the trunk was found at ({place})")
+        place = cloud.words_for(foot)
+        notes.append(f"no base was given: the foot of the trunk was found at {place}")
     learned = goes_by_learned_score(seeded, params)
     if params.search.score == "learned" and not learned:
         notes.append(f"{scorer.name} tells no categories: the paper's score was taken")
@@ -111,6 +110,10 @@ def follow(
 
 def _grown(cloud: PointCloud, at: Floats | None, params: Parameters, seed: int) -> Result:
     """The tree that grows on the votes of the point field."""
+    # Here, since scipy's graphs take as long to load as a small tree to grow, and no other chain
+    # needs them.
+    from prunus.grown import grow_tree
+
     seconds: Seconds = {}
     grown = grow_tree(cloud, at, params, np.random.default_rng(seed), seconds)
     with timed(seconds, "measures"):

@@ -75,8 +75,7 @@ class Evidence:
             linear = float(np.median(skeleton.confidence[1:])) if len(skeleton) > 1 else 0.0
         else:
             linear = float(np.median(Pieces.of(graph.scored).linear))
-        if graph.scored.category.size and result.params.search.score != "growth":
-            trunk = bool(find_trunks(graph.scored))
+            trunk = not graph.scored.category.size or bool(find_trunks(graph.scored))
         if explained < MOST_EXPLAINED and result.trust is not None:
             trust = result.trust.tree
         across = float(spread(graph.superpoints.cloud.xyz)[1])

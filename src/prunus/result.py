@@ -103,5 +103,4 @@ class Result:
         rival = None if self.isolated is None else self.isolated.rival
         if rival is None:
             return []
-        place = ", ".join(f"{value:.2f}" for value in self.scan.to_input.apply(rival))
-        return [f"the tree that stands at ({place}) could be meant as well"]
+        return [f"the tree that stands at {self.scan.words_for(rival)} could be meant as well"]

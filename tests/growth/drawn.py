@@ -5,7 +5,8 @@ import itertools
 import numpy as np
 
 from prunus.field.votes import Threads
-from prunus.model import Floats, Role
+from prunus.growth.grow import Orchard
+from prunus.model import Floats, Role, Skeleton
 
 APART_M = 0.012
 Piece = tuple[Role, list[tuple[float, float, float]], float]
@@ -73,3 +74,9 @@ def surface_of(pieces: list[Piece], rng: np.random.Generator, apart: float = 0.0
             found.append(start + rng.random((count, 1)) * axis + radius * ring)
     places = np.concatenate(found)
     return np.asarray(places + rng.normal(0, 0.001, places.shape))
+
+
+def grow(threads: Threads, base: Floats | None = None) -> Skeleton:
+    """The tree of some threads: of that at `base` (3,), or of that at which the scanner looks."""
+    orchard = Orchard.of(threads, base)
+    return orchard.tree_at(orchard.main)

@@ -7,12 +7,11 @@ import pytest
 
 from prunus.growth.feet import find_feet
 from prunus.growth.graph import join_threads
-from prunus.growth.grow import grow
 from prunus.measure import branches
 from prunus.model import Floats, Label, RigidMotion, Role, Skeleton
 from prunus.model.rotations import turned
 from prunus.rules import offenders
-from tests.growth.drawn import TEXTBOOK, Piece, threads_of
+from tests.growth.drawn import TEXTBOOK, Piece, grow, threads_of
 
 BARE = TEXTBOOK[:-2]
 LEVEL = [(0.1, 0, 0.64), (0.2, 0, 0.70), (0.85, 0, 0.72), (0.9, 0, 1.6)]

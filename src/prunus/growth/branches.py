@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from prunus.field.votes import Threads
 from prunus.growth.ways import NOWHERE, Ways
-from prunus.model import Bools, Floats, Ints, Role
+from prunus.model import Bools, Floats, Ints, Role, parents_first
 
 COVER_M = 0.015
 """A branch covers what lies so far from its surface."""
@@ -56,7 +56,9 @@ def cut_branches(threads: Threads, ways: Ways, foot: int) -> Grown:
         inside[path] = True
         for near in tree.query_ball_point(threads.xyz[path], cover[path]):
             covered[near] = True
-    return _rows(foot, before, ways.length)
+    above = {int(node): int(before[node]) for node in np.flatnonzero(before != NOWHERE)}
+    nodes, parent = parents_first(foot, above)
+    return Grown(nodes=np.array(nodes), parent=np.array(parent))
 
 
 def _way_back(before: Ints, tip: int, inside: Bools) -> Ints:
@@ -86,16 +88,3 @@ def _onto_host(xyz: Floats, path: Ints, covered: Bools, inside: Bools) -> Ints:
     carriers = np.flatnonzero(inside)
     host = carriers[np.linalg.norm(xyz[carriers] - xyz[path[last]], axis=1).argmin()]
     return np.append(path[:last], host)
-
-
-def _rows(foot: int, before: Ints, length: Floats) -> Grown:
-    """The nodes of a tree, each after the one before it."""
-    below: dict[int, list[int]] = {}
-    for node in np.flatnonzero(before != NOWHERE).tolist():
-        below.setdefault(int(before[node]), []).append(node)
-    nodes, parent = [foot], [-1]
-    for row, node in enumerate(nodes):
-        for child in below.get(node, []):
-            nodes.append(child)
-            parent.append(row)
-    return Grown(nodes=np.array(nodes), parent=np.array(parent))

@@ -25,8 +25,6 @@ AGAINST_M, STEM_AGAINST_M = 0.5, 0.15
 whose stem is in view."""
 ALIKE_M = 0.02
 """Ways that differ by less in that are alike."""
-
-
 ASIDE_M = 0.5
 """A tree that stands so far from the middle of the view is half as likely to be meant."""
 UNSEEN_STEM = 0.05

@@ -62,22 +62,22 @@ class ThreadGraph:
     def against(self) -> csr_array:
         """How far (N, N) each of `outward` goes against the flow of wood, metres; none is 1e-9."""
         size = len(self.threads)
-        _, length, off = _off(self.threads, self.outward)
+        length, off = _off(self.threads, self.outward)
         metres = length * np.maximum(off - WANDERS, 0.0) / 2 + 1e-9
         return csr_array((metres, tuple(self.outward.T)), shape=(size, size))
 
 
-def _off(threads: Threads, outward: Ints) -> tuple[Floats, Floats, Floats]:
-    """The way (E, 3) over each edge, its length, and how far off its direction is, 0 to 2."""
+def _off(threads: Threads, outward: Ints) -> tuple[Floats, Floats]:
+    """The length (E,) of each edge, and how far off its direction is, 0 to 2."""
     way = threads.xyz[outward[:, 1]] - threads.xyz[outward[:, 0]]
     length = np.maximum(np.linalg.norm(way, axis=1), 1e-9)
     off = 1 + (way * threads.toward_foot[outward[:, 1]]).sum(axis=1) / length
-    return way, length, off
+    return length, off
 
 
 def growth_costs(threads: Threads, outward: Ints, gap: Bools) -> Floats:
     """What it costs (E,) to grow over edges (E, 2) from their first node to their second."""
-    _, length, off = _off(threads, outward)
+    length, off = _off(threads, outward)
     along = length * (1 + np.where(gap, ASTRAY_IN_GAP, ASTRAY) * off)
     across = np.where(gap, GAP * length + GAP_SQUARED * length**2, 0.0)
     return np.asarray(along + across)

@@ -74,9 +74,3 @@ def _to_the_ends(threads: Threads, grown: Grown) -> Floats:
     xyz[tips] -= beyond[tips, :1] * threads.toward_foot[nodes[tips]]
     xyz[0] += beyond[0, 1] * threads.toward_foot[nodes[0]]
     return np.asarray(xyz)
-
-
-def grow(threads: Threads, base: Floats | None = None) -> Skeleton:
-    """The tree of some threads: of that at `base` (3,), or of that at which the scanner looks."""
-    orchard = Orchard.of(threads, base)
-    return orchard.tree_at(orchard.main)

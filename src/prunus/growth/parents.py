@@ -1,7 +1,7 @@
 """Parents and labels chosen together: branches hang where the grammar likes them best.
 
 By turns the best labels of the tree are found, exactly, and, under these, a better place for every
-branch among all nodes near its foot. Neither step ever makes the tree worth less, so it ends.
+branch among all nodes near its foot. Moves of one turn are weighed each for itself.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from prunus.field.votes import Threads
 from prunus.growth.branches import Grown
-from prunus.growth.graph import growth_costs
+from prunus.growth.graph import NEAR_M, growth_costs
 from prunus.growth.labels import FORK, TURN, Labelled, label_tree
 from prunus.growth.shape import TIP, Tree
 from prunus.model import Bools, Floats, Ints
@@ -21,7 +21,7 @@ REACH_M = 0.20
 END_REACH_M = 0.40
 """and on an end that is so near: what goes on may be hidden."""
 ROUNDS = 6
-"""By then nothing changes."""
+"""So many turns at most."""
 COST = 0.5
 """What a metre of the cost to grow over an edge is worth, in metres of doubtful labels."""
 MORE = 0.02
@@ -34,15 +34,14 @@ def choose_parents(threads: Threads, grown: Grown) -> tuple[Grown, Labelled]:
     """The tree with better parents, and its labels."""
     roles = threads.role[grown.nodes]
     parent = grown.parent.copy()
-    for _ in range(ROUNDS):
+    for left in reversed(range(ROUNDS + 1)):
         tree = Tree(threads.xyz[grown.nodes], parent)
         told = label_tree(tree, roles)
-        better = _better_parents(threads, grown.nodes, tree, told)
+        better = _better_parents(threads, grown.nodes, tree, told) if left else parent
         if (better == parent).all():
             break
         parent = better
-    tree = Tree(threads.xyz[grown.nodes], parent)
-    return _in_order(grown.nodes, tree, label_tree(tree, roles))
+    return _in_order(grown.nodes, tree, told)
 
 
 def _in_order(nodes: Ints, tree: Tree, told: Labelled) -> tuple[Grown, Labelled]:
@@ -108,13 +107,10 @@ def _value(
 ) -> Floats:
     """What it is worth (B,) if branches hang by their first row on hosts, whose labels stay."""
     label = told.label[host]
-    way = tree.xyz[row] - tree.xyz[host]
-    onward = _unit(way + 0.08 * tree.head[row])
-    turn = 1 - (onward * tree.tail[host]).sum(axis=1)
     fork = np.where(_goes_on(tree, told, row, host), FORK[label], 0.0)
-    as_same = told.best[row, label] - TURN * turn - fork
+    as_same = told.best[row, label] - TURN * tree.turn_from(host, row) - fork
     outward = np.column_stack([nodes[host], nodes[row]])
-    gap = np.linalg.norm(way, axis=1) > 0.04
+    gap = np.linalg.norm(tree.xyz[row] - tree.xyz[host], axis=1) > NEAR_M
     cost = growth_costs(threads, outward, gap)
     return np.asarray(np.maximum(told.other[row, label], as_same) - COST * cost)
 
@@ -125,7 +121,3 @@ def _goes_on(tree: Tree, told: Labelled, row: Ints, host: Ints) -> Bools:
     count = np.bincount(tree.parent[1:][alike], minlength=len(tree.parent))
     itself = (tree.parent[row] == host) & (told.label[row] == told.label[host])
     return np.asarray(count[host] > itself)
-
-
-def _unit(vectors: Floats) -> Floats:
-    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9))

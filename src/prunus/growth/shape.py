@@ -100,10 +100,13 @@ class Tree:
 
     @cached_property
     def turn(self) -> Floats:
-        """How much wood turns (M,) from the parent of each row to it: 0 straight on, 2 back."""
-        onward = _unit(self.xyz - self.xyz[np.maximum(self.parent, 0)] + ALONG_M * self.head)
-        coming = self.tail[np.maximum(self.parent, 0)]
-        return np.asarray(1 - (onward * coming).sum(axis=1))
+        """How much wood turns (M,) from the parent of each row to it."""
+        return self.turn_from(np.maximum(self.parent, 0), np.arange(len(self.parent)))
+
+    def turn_from(self, hosts: Ints, rows: Ints) -> Floats:
+        """How much it would turn (B,) from hosts to rows that hang there: 0 straight on, 2 back."""
+        onward = _unit(self.xyz[rows] - self.xyz[hosts] + ALONG_M * self.head[rows])
+        return np.asarray(1 - (onward * self.tail[hosts]).sum(axis=1))
 
 
 def _unit(vectors: Floats) -> Floats:

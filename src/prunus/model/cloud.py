@@ -115,6 +115,10 @@ class PointCloud:
         colours = None if rgb is None else frozen(rgb, np.uint8, points.shape, "rgb")
         return cls(snapped(turned - middle), back, colours)
 
+    def words_for(self, place: Floats) -> str:
+        """A place (3,), house frame, as a person reads it: (x, y, z) in the frame of the input."""
+        return "(" + ", ".join(f"{value:.2f}" for value in self.to_input.apply(place)) + ")"
+
     def take(self, rows: Ints | Bools) -> PointCloud:
         """The cloud of these rows only, in the same frame."""
         rgb = None if self.rgb is None else self.rgb[rows]

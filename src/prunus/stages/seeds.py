@@ -81,11 +81,11 @@ def nearest_superpoint(scored: ScoredGraph, point: Floats) -> int:
     distance = np.linalg.norm(scored.xyz - point, axis=1)
     reach = BASE_REACH * scored.candidates.superpoints.radius
     if distance.min() > reach:
-        place = scored.candidates.superpoints.cloud.to_input.apply
+        shown = scored.candidates.superpoints.cloud.words_for
         meant = _meant(scored, point) if distance.min() > MISTAKEN_M else ""
         raise PrunusError(
-            f"the base {_shown(place(point))} is {distance.min():.2f} m from the nearest part of "
-            f"the tree, {_shown(place(scored.xyz[distance.argmin()]))}; expected at most "
+            f"the base {shown(point)} is {distance.min():.2f} m from the nearest part of "
+            f"the tree, {shown(scored.xyz[distance.argmin()])}; expected at most "
             f"{reach:.2f} m (metres, in the frame of the file){meant}"
         )
     joined = np.isin(np.arange(len(distance)), scored.edges) & (distance <= reach)
@@ -100,7 +100,7 @@ def out_of_weeds(scored: ScoredGraph, base: Floats | None) -> tuple[Floats | Non
     foot = None if base is None or near_to(scored, base) else foot_above(scored, base)
     if base is None or foot is None:
         return base, []
-    shown = _shown(scored.candidates.superpoints.cloud.to_input.apply(base))
+    shown = scored.candidates.superpoints.cloud.words_for(base)
     below = scored.xyz[foot, 2] - base[2]
     return scored.xyz[foot], [
         f"the base {shown} is {below:.2f} m below the lowest wood in view, which was taken"
@@ -134,20 +134,20 @@ def thickness(scored: ScoredGraph) -> Floats:
 def doubts_of_base(scored: ScoredGraph, root: int) -> list[str]:
     """Why a base may be none: no thick wood is about it, or its tree goes on far below."""
     found = []
-    xyz, place = scored.xyz, scored.candidates.superpoints.cloud.to_input.apply
+    xyz, shown = scored.xyz, scored.candidates.superpoints.cloud.words_for
     piece = components(len(xyz), scored.edges[scored.confidence >= SURE])
     own = np.flatnonzero(piece == piece[root])
     lowest = own[xyz[own, 2].argmin()]
     above = float(xyz[root, 2] - xyz[lowest, 2])
     if above > ABOVE_M:
         found.append(
-            f"the base {_shown(place(xyz[root]))} is {above:.1f} m above the lowest wood of its "
-            f"tree, {_shown(place(xyz[lowest]))}"
+            f"the base {shown(xyz[root])} is {above:.1f} m above the lowest wood of its "
+            f"tree, {shown(xyz[lowest])}"
         )
     about = np.linalg.norm(xyz - xyz[root], axis=1)
     beside = about <= BASE_REACH * scored.candidates.superpoints.radius
     if thickness(scored)[beside].max() < FOOT_SHARE:
-        found.append(f"the base {_shown(place(xyz[root]))} touches no trunk: thin wood is about it")
+        found.append(f"the base {shown(xyz[root])} touches no trunk: thin wood is about it")
     return found
 
 
@@ -183,7 +183,3 @@ def lowest_of_largest(scored: ScoredGraph, alpha_conf: float) -> int:
     largest = np.bincount(piece).argmax()
     nodes = np.flatnonzero(piece == largest)
     return int(nodes[scored.xyz[nodes, 2].argmin()])
-
-
-def _shown(point: Floats) -> str:
-    return "(" + ", ".join(f"{value:.2f}" for value in point) + ")"
