@@ -18,7 +18,7 @@ COVER_M = 0.015
 """A branch covers what lies so far from its surface."""
 THIN_M = 0.012
 """Radius that the thinnest branch is taken to have there."""
-LEAST_M, LEAST_SPUR_M = 0.06, 0.12
+LEAST_M, LEAST_SPUR_M = 0.07, 0.12
 """Shorter branches are none; nor are these where most of one looks like a spur."""
 SPUR = 0.4
 """Probability of a spur from which a branch looks like one."""

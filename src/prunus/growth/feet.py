@@ -25,10 +25,9 @@ AGAINST_M, STEM_AGAINST_M = 0.5, 0.15
 whose stem is in view."""
 ALIKE_M = 0.02
 """Ways that differ by less in that are alike."""
-ASIDE_M = 0.5
-"""A tree that stands so far from the middle of the view is half as likely to be meant."""
-UNSEEN_STEM = 0.05
-"""The share of its wood that a tree has as stem where none is in view."""
+MUCH, ASIDE, BEHIND = 0.56, 3.3, 1.25
+"""How much likelier (log odds) a tree is meant for e times the wood, and how much less for a metre
+from the middle of the view and a metre behind the foremost."""
 
 
 def find_feet(graph: ThreadGraph, given: int | None = None) -> Ints:
@@ -102,7 +101,7 @@ def _own_feet(graph: ThreadGraph, feet: list[int], limit: Floats) -> Ints:
 
 def _with(graph: ThreadGraph, given: int, feet: Ints) -> Ints:
     """One that was given, and the feet of the other trees: all but that of its own tree."""
-    _, _, owner = dijkstra(graph.matrix, indices=feet, min_only=True, return_predecessors=True)
+    _, _, owner = dijkstra(graph.belonging, indices=feet, min_only=True, return_predecessors=True)
     down = dijkstra(graph.against, indices=given, limit=AGAINST_M)
     own = (feet == owner[given]) & np.isfinite(down[feet])
     return np.append(given, feet[~own & (feet != given)])
@@ -119,18 +118,16 @@ def _low_end(threads: Threads, nodes: Ints) -> tuple[int, float, float]:
 def main_foot(threads: Threads, foot: Ints, feet: Ints) -> int:
     """Of the trees in view that at which the scanner looks; `foot` (N,) is that of each node.
 
-    It stands in the middle, it has much wood and stem in view, and is scanned densely, since it is
-    near.
+    It stands in the middle and in front, and much of it is in view (a conditional logit).
     """
     own = foot == feet[:, None]
     voxels = np.bincount(threads.of_voxel[threads.of_voxel >= 0], minlength=len(threads))
-    points = threads.votes**2 / np.maximum(voxels, 1)
-    stem, wood = own @ (points * threads.role[:, Role.STEM]), own @ points
-    dense = wood / np.maximum(own @ voxels, 1)
+    wood = own @ (threads.votes**2 / np.maximum(voxels, 1))
     middle = np.ptp(threads.xyz[:, 0]) / 2 + threads.xyz[:, 0].min()
-    aside = (threads.xyz[feet, 0] - middle) / ASIDE_M
-    seen = (stem + UNSEEN_STEM * wood) * wood * dense
-    return int(feet[(seen / (1 + aside**2)).argmax()])
+    aside = np.abs(threads.xyz[feet, 0] - middle)
+    behind = threads.xyz[feet, 1] - threads.xyz[feet, 1].min()
+    chance = MUCH * np.log1p(wood) - ASIDE * aside - BEHIND * behind
+    return int(feet[chance.argmax()])
 
 
 def _lowest(graph: ThreadGraph) -> Ints:

@@ -32,6 +32,11 @@ WANDERS = 0.15
 """A direction that is off by so little goes with the flow."""
 GAP, GAP_SQUARED = 4.0, 6.0
 """What a metre of a gap costs more, and a square metre."""
+NEARER, ELSEWHERE, LOOSE = 0.05, 4.0, 8.0
+"""Of which tree wood is: what a metre from its foot costs, what more for each unit by which the
+direction is off by more than `ASTRAY_LEAST`, and what a metre of a gap. It hardly counts how near a
+foot is: trees stand as near to each other as their branches are long."""
+ASTRAY_LEAST = 0.2
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -53,10 +58,21 @@ class ThreadGraph:
         return growth_costs(self.threads, self.outward, np.tile(self.gap, 2))
 
     @cached_property
-    def matrix(self) -> csr_array:
-        """The costs (N, N), from row to column."""
+    def belonging(self) -> csr_array:
+        """What it costs (N, N) to take the wood at the column for that of the row's tree."""
         size = len(self.threads)
-        return csr_array((self.costs, tuple(self.outward.T)), shape=(size, size))
+        length, off = _off(self.threads, self.outward)
+        gap = np.where(np.tile(self.gap, 2), LOOSE * length + GAP_SQUARED * length**2, 0.0)
+        off = np.maximum(off - ASTRAY_LEAST, 0.0)
+        return csr_array(
+            (length * (NEARER + ELSEWHERE * off) + gap, tuple(self.outward.T)), shape=(size, size)
+        )
+
+    def within(self, tree: Ints) -> csr_array:
+        """The costs of growing (N, N) over edges that stay in one tree (N,)."""
+        own = tree[self.outward[:, 0]] == tree[self.outward[:, 1]]
+        size = len(self.threads)
+        return csr_array((self.costs[own], tuple(self.outward[own].T)), shape=(size, size))
 
     @cached_property
     def against(self) -> csr_array:

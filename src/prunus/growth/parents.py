@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from prunus.field.votes import Threads
-from prunus.growth.branches import Grown
+from prunus.growth.branches import COVER_M, THIN_M, Grown
 from prunus.growth.graph import NEAR_M, growth_costs
 from prunus.growth.labels import FORK, TURN, Labelled, label_tree
 from prunus.growth.shape import TIP, Tree
@@ -22,10 +22,12 @@ END_REACH_M = 0.40
 """and on an end that is so near: what goes on may be hidden."""
 ROUNDS = 6
 """So many turns at most."""
-COST = 0.5
+COST = 0.7
 """What a metre of the cost to grow over an edge is worth, in metres of doubtful labels."""
 MORE = 0.02
 """A place is better by at least so much."""
+BETWEEN = 3
+"""A way is looked at in so many places whether there is wood."""
 LEAST_M = 0.05
 """Shorter branches stay where they are."""
 
@@ -110,9 +112,19 @@ def _value(
     fork = np.where(_goes_on(tree, told, row, host), FORK[label], 0.0)
     as_same = told.best[row, label] - TURN * tree.turn_from(host, row) - fork
     outward = np.column_stack([nodes[host], nodes[row]])
-    gap = np.linalg.norm(tree.xyz[row] - tree.xyz[host], axis=1) > NEAR_M
-    cost = growth_costs(threads, outward, gap)
+    cost = growth_costs(threads, outward, _leaves_wood(threads, tree.xyz[host], tree.xyz[row]))
     return np.asarray(np.maximum(told.other[row, label], as_same) - COST * cost)
+
+
+def _leaves_wood(threads: Threads, start: Floats, end: Floats) -> Bools:
+    """Whether straight ways (B,) from some places (B, 3) to others go through the open."""
+    far = np.flatnonzero(np.linalg.norm(end - start, axis=1) > NEAR_M)
+    share = np.linspace(0, 1, BETWEEN + 2)[1:-1, None, None]
+    away, node = cKDTree(threads.xyz).query(start[far] + share * (end - start)[far])
+    cover = np.maximum(threads.radius, THIN_M) + COVER_M
+    leaves = np.zeros(len(start), np.bool_)
+    leaves[far] = (away > cover[node]).any(axis=0)
+    return leaves
 
 
 def _goes_on(tree: Tree, told: Labelled, row: Ints, host: Ints) -> Bools:

@@ -1,4 +1,7 @@
-"""The cheapest ways from the feet to every node: Dijkstra's algorithm from all feet at once."""
+"""To which tree each node belongs, and the cheapest ways from its foot: Dijkstra's algorithm.
+
+Both run from all feet at once, the second within each tree.
+"""
 
 from __future__ import annotations
 
@@ -26,9 +29,10 @@ class Ways:
 
 
 def find_ways(graph: ThreadGraph, feet: Ints) -> Ways:
-    """The cheapest way from the nearest foot by cost, to each node."""
+    """The cheapest way to each node, from the foot of the tree that it most likely belongs to."""
+    _, _, tree = dijkstra(graph.belonging, indices=feet, return_predecessors=True, min_only=True)
     cost, before, foot = dijkstra(
-        graph.matrix, indices=feet, return_predecessors=True, min_only=True
+        graph.within(tree), indices=feet, return_predecessors=True, min_only=True
     )
     reached = np.isfinite(cost)
     before = np.where(reached & (before >= 0), before, NOWHERE)
