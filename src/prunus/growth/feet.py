@@ -25,9 +25,10 @@ AGAINST_M, STEM_AGAINST_M = 0.5, 0.15
 whose stem is in view."""
 ALIKE_M = 0.02
 """Ways that differ by less in that are alike."""
-MUCH, ASIDE, BEHIND = 0.56, 3.3, 1.25
-"""How much likelier (log odds) a tree is meant for e times the wood, and how much less for a metre
-from the middle of the view and a metre behind the foremost."""
+MUCH, ASIDE, FAR_ASIDE, BEHIND, FOOT_BEHIND = 0.53, 1.2, 1.15, 1.6, 1.0
+"""How much likelier (log odds) a tree is meant for e times the wood; how much less for a metre from
+the middle of the view, and for the square of that; for a metre that its wood is behind that of the
+foremost, and its foot."""
 
 
 def find_feet(graph: ThreadGraph, given: int | None = None) -> Ints:
@@ -122,11 +123,13 @@ def main_foot(threads: Threads, foot: Ints, feet: Ints) -> int:
     """
     own = foot == feet[:, None]
     voxels = np.bincount(threads.of_voxel[threads.of_voxel >= 0], minlength=len(threads))
-    wood = own @ (threads.votes**2 / np.maximum(voxels, 1))
+    points = threads.votes**2 / np.maximum(voxels, 1)
+    wood = own @ points
     middle = np.ptp(threads.xyz[:, 0]) / 2 + threads.xyz[:, 0].min()
     aside = np.abs(threads.xyz[feet, 0] - middle)
-    behind = threads.xyz[feet, 1] - threads.xyz[feet, 1].min()
-    chance = MUCH * np.log1p(wood) - ASIDE * aside - BEHIND * behind
+    depth = own @ (points * threads.xyz[:, 1]) / np.maximum(wood, 1e-9)
+    chance = MUCH * np.log1p(wood) - ASIDE * aside - FAR_ASIDE * aside**2
+    chance -= BEHIND * depth + FOOT_BEHIND * threads.xyz[feet, 1]
     return int(feet[chance.argmax()])
 
 
