@@ -18,7 +18,8 @@ from prunus.model import Bools, Floats, Ints, Role
 LEAST_WOOD = 0.5  # probability of wood from which a voxel votes
 SHIFT_M = 0.02  # bandwidth of the mean shift
 LONELY_M, LEAST_VOTES = 0.03, 3.0  # fewer votes (weights) so near to one are noise,
-LEAST_SHARE, ENOUGH_VOTES = 0.2, 8.0  # and fewer than this share of what is usual, or than enough
+LEAST_SHARE, ENOUGH_VOTES = 0.2, 8.0  # and fewer than this share of what is usual, or than enough;
+SPARSE = 0.5  # where few are usual, fewer than this share of that
 APART_M = 0.012  # distance of the nodes that stand for the votes
 ALIKE_COS = 0.5  # votes whose directions differ more are of two branches that touch or cross
 LEAST_CHANCE = 1e-3  # probabilities below are taken for it when their logarithms are averaged
@@ -83,7 +84,8 @@ def gather_votes(field: PointField) -> Threads:
     voted = _mean_shift(field.xyz + field.offset, field.toward_foot, weight)
     density = _around(voted, field.toward_foot, LONELY_M) @ weight
     usual = float(np.median(density)) if len(density) else 0.0
-    kept = density >= max(LEAST_VOTES, min(LEAST_SHARE * usual, ENOUGH_VOTES))
+    fewest = min(LEAST_VOTES, SPARSE * usual)
+    kept = density >= max(fewest, min(LEAST_SHARE * usual, ENOUGH_VOTES))
     field, voted, weight, density = field.take(kept), voted[kept], weight[kept], density[kept]
     node = _node_of(voted, field.toward_foot, density)
     of_voxel[wood[kept]] = node
