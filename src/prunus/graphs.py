@@ -24,6 +24,9 @@ from prunus.params import Parameters, checked_params, checked_seed
 from prunus.search import search
 from prunus.stages.seeds import find_tips
 
+SEARCH = Parameters.paper().changed("search", refine=True)
+"""The paper's search, and the best skeleton improved one edge at a time."""
+
 
 @dataclass(frozen=True, eq=False)
 class GraphSkeleton:
@@ -54,11 +57,17 @@ def search_graph(
     """Search the best labelled tree in a graph (sec. Population-based search).
 
     nodes (N, 3) metres, Z up, X along the row; edges (E, 2) undirected pairs of nodes; confidence
-    (E,) in [0, 1]; base and tips (T,) node indices, tips found as in the paper when None.
+    (E,) in [0, 1]; base and tips (T,) node indices, tips found as in the paper when None. params:
+    those of the paper's method; None: as in the paper, and then refined.
     Raises PrunusError naming the argument, what was found and what was expected, or where nothing
     can be grown from the base.
     """
-    params = checked_params(params)
+    params = checked_params(SEARCH if params is None else params)
+    if params.method == "default":
+        raise PrunusError(
+            'params: of the method "default", which searches no graph; expected '
+            "those of Parameters.paper()"
+        )
     rng = np.random.default_rng(checked_seed(seed))
     graph = _checked_graph(nodes, edges, confidence, params)
     count = len(graph.xyz)

@@ -21,7 +21,7 @@ from prunus.params import Parameters
 from prunus.simulate.orchard import simulate_tree
 from tests.drawn import tree as drawn_tree
 
-PARAMS = Parameters().changed("input", points=8000)
+PARAMS = Parameters.learned().changed("input", points=8000)
 
 
 @cache

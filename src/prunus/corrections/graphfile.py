@@ -14,8 +14,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from prunus import __version__
 from prunus.errors import PrunusError
+from prunus.geometry.near import within
 from prunus.io.arrays import Arrays, finite, indices, read_arrays, shares, there, write_arrays
-from prunus.kernels.neighbours import within
 from prunus.model import (
     CandidateGraph,
     Floats,
@@ -31,7 +31,7 @@ from prunus.model import (
 from prunus.params import Parameters
 from prunus.reading import json_of, record_of
 from prunus.result import Result
-from prunus.sensing.isolate import Isolated
+from prunus.sensing.isolated import Isolated
 
 Row = tuple[float, float, float]
 COLUMNS = tuple(column.name for column in fields(Skeleton))
@@ -53,7 +53,7 @@ class GraphRecord(BaseModel):
     radius: Annotated[float, Field(gt=0)]
     scorer: str
     base: Annotated[int, Field(ge=0)]
-    score: float
+    score: float | None
     warnings: list[str]
     notes: list[str]
     isolated_at: Row | None

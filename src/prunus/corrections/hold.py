@@ -14,7 +14,7 @@ import numpy as np
 from prunus.corrections.draft import Draft, Pair, pair_of
 from prunus.corrections.refused import Refused
 from prunus.corrections.settle import Allowed, settled
-from prunus.kernels.neighbours import within
+from prunus.geometry.near import within
 from prunus.model import (
     CandidateGraph,
     Floats,
@@ -26,7 +26,6 @@ from prunus.model import (
     Superpoints,
 )
 from prunus.params import Parameters
-from prunus.pipeline import best_skeleton
 
 
 @dataclass(frozen=True)
@@ -59,6 +58,8 @@ def searched(draft: Draft, held: Held, graph: SeededGraph, params: Parameters, s
 
     Raises Refused, naming the edges, where none could be made that does.
     """
+    from prunus.searched import best_skeleton
+
     seeded = held_graph(draft, held, graph)
     found = best_skeleton(seeded, params, np.random.default_rng(seed), {}).skeleton
     best = _draft_of(found, draft)
