@@ -7,6 +7,7 @@ from prunus import PrunusError, skeletonize
 from prunus.errors import NoTreeError
 from prunus.measure import branches
 from prunus.model import Floats, Kind, Label, Skeleton
+from prunus.params import GROUPS, Parameters
 from prunus.rules import offenders
 from tests.conftest import simulated
 from tests.growth.drawn import TEXTBOOK, surface_of
@@ -84,3 +85,28 @@ def test_trees_of_the_simulator_are_mostly_found() -> None:
     distance = np.linalg.norm(truth.xyz[:, None] - found.xyz[None], axis=2).min(axis=1)
     thick = truth.edges_with(Label.SUPPORT) | truth.edges_with(Label.LEADER)
     assert (distance[thick] < 0.05).mean() > 0.8
+
+
+def test_each_parameter_that_is_shown_changes_some_result() -> None:
+    """Of a row of two trees, one scanned much denser: points drawn, and what is the tree."""
+    some = surface_of(TEXTBOOK, np.random.default_rng(0))
+    near = np.random.default_rng(1).normal(0, 0.004, (60_000, 3)) + np.array([0, 0, 0.3])
+    row = np.concatenate([some, some + np.array([2.2, 0, 0]), near])
+    first = skeletonize(row, [0, 0, 0])
+    shown = [
+        (group, key)
+        for group in GROUPS["default"]
+        for key in getattr(Parameters(), group).model_dump()
+    ]
+    other = {
+        ("input", "points"): 20_000,
+        ("input", "draw"): "space",
+        ("isolation", "isolate"): "never",
+        ("isolation", "raw_from"): 0.95,
+    }
+    assert set(shown) == set(other)
+    for (group, key), value in other.items():
+        again = skeletonize(row, [0, 0, 0], Parameters().changed(group, **{key: value}))
+        same = np.array_equal(again.skeleton.xyz, first.skeleton.xyz)
+        whole = (again.isolated is None) == (first.isolated is None)
+        assert not (same and whole), f"{group}.{key}"

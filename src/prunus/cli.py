@@ -728,10 +728,10 @@ def schema(
 
 def _network(weights: Path | None) -> NetworkScorer | None:
     """A network of one's own; OptionError where it is none, before anything is done."""
-    from prunus.stages.networks import NetworkScorer
-
     if weights is None:
         return None
+    from prunus.stages.networks import NetworkScorer
+
     network = NetworkScorer(weights)
     with blaming_the_command():
         network.check()

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -62,7 +64,7 @@ def search_graph(
     Raises PrunusError naming the argument, what was found and what was expected, or where nothing
     can be grown from the base.
     """
-    params = checked_params(SEARCH if params is None else params)
+    params = checked_params(_of_search(params))
     if params.method == "default":
         raise PrunusError(
             'params: of the method "default", which searches no graph; expected '
@@ -91,6 +93,16 @@ def search_graph(
     pairs = found.skeleton.superpoint[found.skeleton.edges]
     words = np.array([Label(label).word for label in found.skeleton.label[1:]], dtype=np.str_)
     return GraphSkeleton(pairs, words, found.score, found.history, found.skeleton.moved(back))
+
+
+def _of_search(params: Any) -> Any:
+    """Parameters that a caller gave; what nested dicts do not name is as in `SEARCH`."""
+    if params is None:
+        return SEARCH
+    if not isinstance(params, Mapping) or not isinstance(params.get("search", {}), Mapping):
+        return params
+    search = {"refine": True, **params.get("search", {})}
+    return {"method": "paper", **params, "search": search}
 
 
 def _checked_graph(

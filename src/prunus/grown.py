@@ -15,7 +15,7 @@ from prunus.field.votes import Threads, gather_votes
 from prunus.field.voxels import Voxels, voxels_of
 from prunus.growth.evidence import seeded_graph
 from prunus.growth.grow import Orchard
-from prunus.model import Floats, Ints, Kind, PointCloud, SeededGraph, Skeleton
+from prunus.model import Floats, Ints, Kind, PointCloud, SeededGraph, Skeleton, parents_first
 from prunus.params import Parameters
 from prunus.result import Seconds, timed
 from prunus.sensing.isolated import Isolated
@@ -74,14 +74,18 @@ class View:
         """What each point of the cloud is to a tree."""
         return Isolated(self._kinds(int(tree.superpoint[0])), tree.xyz[0], tree.xyz[0])
 
-    def graph(self, alone: bool) -> SeededGraph:
-        """The graph of the threads, with the points of the tree that is meant `alone`, or all."""
+    def tree(self) -> Skeleton:
+        """The tree that is meant."""
+        return _by_nodes(self.orchard.tree_at(self.orchard.main))
+
+    def graph(self, tree: Skeleton, alone: bool) -> SeededGraph:
+        """The graph of the threads and of that tree, with its points `alone`, or all."""
         mine = np.ones(len(self.drawn), np.bool_)
         if alone:
             of_voxel = self.orchard.foot_of_voxel()
             mine = of_voxel[self.voxels.of_point] == self.orchard.main
         points, of_voxel = self.drawn.take(mine), self.voxels.of_point[mine]
-        return seeded_graph(points, of_voxel, self.voxels.xyz, self.orchard)
+        return seeded_graph(points, of_voxel, self.voxels.xyz, self.orchard, tree)
 
     def _kinds(self, base: int) -> Ints:
         """What each point (P,) is to the tree that grows from a node (`Kind`)."""
@@ -119,17 +123,30 @@ def grow_tree(
     """
     view = View.of(cloud, at, params, rng, seconds)
     with timed(seconds, "growth"):
-        skeleton = view.orchard.tree_at(view.orchard.main)
+        skeleton = view.tree()
     with timed(seconds, "isolate"):
         isolated = view.isolated(skeleton)
         raw = isolated.removed >= params.isolation.raw_from
         raw = {"auto": raw, "always": True, "never": False}[params.isolation.isolate]
-        graph = view.graph(alone=raw)
+        graph = view.graph(skeleton, alone=raw)
     notes = [*view.notes, isolated.told()] if raw else view.notes
     if at is None:
         place = cloud.words_for(skeleton.xyz[0])
         notes = [*notes, f"no base was given: the foot of the trunk was found at {place}"]
     return Grown(skeleton=skeleton, graph=graph, isolated=isolated if raw else None, notes=notes)
+
+
+def _by_nodes(tree: Skeleton) -> Skeleton:
+    """The same tree with what hangs on one node in the order of nodes, as corrections have it."""
+    node = tree.superpoint
+    above = {int(node[row]): int(node[tree.parent[row]]) for row in range(1, len(tree))}
+    order, parent = parents_first(int(node[0]), dict(sorted(above.items())))
+    row_of = {one: row for row, one in enumerate(node.tolist())}
+    row = np.array([row_of[one] for one in order])
+    return Skeleton.build(
+        tree.xyz[row], parent, tree.label[row], confidence=tree.confidence[row],
+        radius=tree.radius[row], superpoint=order,
+    )  # fmt: skip
 
 
 def _on_wood(

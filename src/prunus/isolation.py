@@ -53,7 +53,7 @@ class Opened:
     def tree(self) -> Isolated:
         """The tree that is meant; NoTreeError: it is none."""
         with naming(self.scan.file.path), explaining(self.scan.cloud):
-            tree = self.view.orchard.tree_at(self.view.orchard.main)
+            tree = self.view.tree()
             if not is_tree(tree):
                 raise NoTreeError("no tree was found: hardly any branches, or a surface or a heap")
             return self.view.isolated(tree)

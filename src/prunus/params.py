@@ -267,8 +267,9 @@ class Parameters(_Group):
         if not isinstance(method, str) or method not in GROUPS:
             return values
         for name, field in cls.model_fields.items():
-            unused = name not in ("method", *GROUPS[method])
-            if unused and values.get(name, field.default) != field.default:
+            if name not in values or name in ("method", *GROUPS[method]):
+                continue
+            if not isinstance(values[name], _Group) or values[name] != field.default:
                 raise ValueError(_foreign(name, method))
         for name, own in _OWN[defaults or method].items():
             given = values.get(name, {})

@@ -52,7 +52,9 @@ def way_of(trials: list[Record]) -> Record:
             for kind in ("recall", "precision", "f1")
         },
         "cpu_s": spread([trial["cpu_s"]["total"] for trial in timed]),
-        "cpu_before_search": _median(before(trial) / all_stages(trial) for trial in timed),
+        "cpu_before_search": _median(
+            before(trial) / all_stages(trial) for trial in timed if "search" in trial["cpu_s"]
+        ),
         "score_found": _median(trial["score"] for trial in scored),
         "score_of_corrected": _median(trial["score_of_corrected"] for trial in scored),
         "corrected_scores_less": float(
