@@ -13,7 +13,7 @@ from prunus.experiment.habits import HABITS
 from prunus.experiment.trial import Record
 from prunus.model import Label
 
-BEFORE = ("sample", "superpoints", "candidates", "confidence", "seeds")
+BEFORE = ("sample", "superpoints", "candidates", "confidence", "seeds", "field", "votes")
 """Stages before the search."""
 
 
@@ -52,9 +52,7 @@ def way_of(trials: list[Record]) -> Record:
             for kind in ("recall", "precision", "f1")
         },
         "cpu_s": spread([trial["cpu_s"]["total"] for trial in timed]),
-        "cpu_before_search": _median(
-            before(trial) / all_stages(trial) for trial in timed if "search" in trial["cpu_s"]
-        ),
+        "cpu_before_search": _median(before(trial) / all_stages(trial) for trial in timed),
         "score_found": _median(trial["score"] for trial in scored),
         "score_of_corrected": _median(trial["score_of_corrected"] for trial in scored),
         "corrected_scores_less": float(
@@ -96,8 +94,8 @@ def spread(values: Iterable[float]) -> Record:
 
 
 def before(trial: Record) -> float:
-    """CPU seconds before the search."""
-    return float(sum(trial["cpu_s"][stage] for stage in BEFORE))
+    """CPU seconds before the search, or before the tree grows."""
+    return float(sum(trial["cpu_s"].get(stage, 0.0) for stage in BEFORE))
 
 
 def all_stages(trial: Record) -> float:
