@@ -18,10 +18,11 @@ import numpy as np
 from bench.graphs import PARAMS, graph_of, row_graph, tree_scan
 from prunus.evaluate.curves import curve_measures
 from prunus.evaluate.found import branch_measures
+from prunus.geometry.near import within
 from prunus.io.clouds import write_cloud
 from prunus.kernels.axes import contract
 from prunus.kernels.frames import edge_images
-from prunus.kernels.neighbours import cover, within
+from prunus.kernels.neighbours import cover
 from prunus.kernels.profiles import edge_profiles
 from prunus.model import SeededGraph
 from prunus.params import Parameters

@@ -23,7 +23,7 @@ import numpy as np
 
 from bench.refine import as_shown, thinned
 from prunus.experiment.orchard import Tree, tree_of
-from prunus.kernels.away import away_from
+from prunus.geometry.near import away_from
 from prunus.measure import shown
 from prunus.measure.cuts import Cut, CutRules, Plan, plan_cuts, shipped_rules
 from prunus.measure.cuts.limbs import Limb, Limbs

@@ -171,7 +171,7 @@ MEANING = {
 }
 PAGE_TEXT = """# The learned score
 
-`search.score = "learned"`, the default, in place of the paper's SkelScore. The score of a skeleton
+`method = "learned"`, in place of the paper's SkelScore. The score of a skeleton
 is the sum, over its edges, of the terms below times their weight for the edge's label, and of what
 the turn from the edge before brings. All are in metres: a weight of 2 for wood and -1 for length
 says that a metre of branch, explained by a metre of edge, brings 1; explained by two edges side by

@@ -16,7 +16,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from prunus.kernels.neighbours import within
+from prunus.geometry.near import within
 from prunus.model import Camera, DepthView, Floats, Label, RigidMotion, RigView
 from prunus.model.rotations import turn_of, turned
 from prunus.sensing.fuse import fuse, merged

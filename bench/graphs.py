@@ -24,7 +24,8 @@ from prunus.stages.confidence import HandmadeScorer, hopeful, score_edges
 from prunus.stages.seeds import find_seeds
 from prunus.stages.superpoints import find_superpoints
 
-PARAMS = Parameters().changed("search", score="paper").changed("superpoints", place="random")
+OLD = Parameters.parse(Parameters.learned().model_dump() | {"method": "paper"})
+PARAMS = OLD.changed("superpoints", place="random")
 """The population-based search on superpoints at random, refined."""
 SPACING = 1.2
 """Distance of the trees of a row, metres: near enough to grow into each other."""

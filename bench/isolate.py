@@ -34,11 +34,11 @@ def measured(seed: int) -> Record:
     scan = simulate_scan(seed)
     cloud = PointCloud.from_xyz(scan.xyz)
     cpu = time.process_time()
-    found = isolate(look_at(cloud, Parameters(), np.random.default_rng(0)), None)
+    found = isolate(look_at(cloud, Parameters.learned(), np.random.default_rng(0)), None)
     cpu = time.process_time() - cpu
     target, things = scan.kind == Kind.TARGET, np.isin(scan.kind, THINGS)
     clean = PointCloud.from_xyz(scan.xyz[target])
-    alone = isolate(look_at(clean, Parameters(), np.random.default_rng(0)), None)
+    alone = isolate(look_at(clean, Parameters.learned(), np.random.default_rng(0)), None)
     stance = find_stance(scan.xyz)
     turn = stance.turn @ FRAMES[stance.frame]
     tree = tree_of(seed)

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from prunus import PointCloud, read_cloud, skeletonize
-from prunus.kernels.neighbours import within
+from prunus.geometry.near import within
 from prunus.measure import branches
 from prunus.model import Bools, Floats, Label
 from prunus.simulate import simulate_scan

@@ -22,7 +22,7 @@ import numpy as np
 from prunus.evaluate.compared import compared, one_to_one, overlap
 from prunus.evaluate.curves import sampled_rows
 from prunus.experiment.orchard import tree_of
-from prunus.kernels.neighbours import nearest, within
+from prunus.geometry.near import nearest, within
 from prunus.measure import Branch, branches, shown
 from prunus.measure.refine import Refined, refined
 from prunus.model import Bools, Floats, Label, PointCloud, Skeleton

@@ -55,7 +55,7 @@ def main() -> None:
     parser.add_argument("--trees", type=int, default=20)
     parser.add_argument("--seed", type=int, default=950_000)
     chosen = parser.parse_args()
-    params = Parameters().changed("isolation", isolate="never")
+    params = Parameters.learned().changed("isolation", isolate="never")
     total = np.zeros((2, 4))
     for seed in range(chosen.seed, chosen.seed + chosen.trees):
         tree = tree_of(seed)

@@ -7,12 +7,10 @@ from prunus import PrunusError, skeletonize
 from prunus.errors import NoTreeError
 from prunus.measure import branches
 from prunus.model import Floats, Kind, Label, Skeleton
-from prunus.params import Parameters
+from prunus.params import GROUPS, Parameters
 from prunus.rules import offenders
 from tests.conftest import simulated
 from tests.growth.drawn import TEXTBOOK, surface_of
-
-GROWTH = Parameters.growth()
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +23,7 @@ def count(tree: Skeleton) -> list[int]:
 
 
 def test_a_textbook_tree_is_found_whole(cloud: Floats) -> None:
-    result = skeletonize(cloud, params=GROWTH)
+    result = skeletonize(cloud)
     assert count(result.skeleton)[:3] == [1, 2, 4]
     assert offenders(result.skeleton) == {}
     assert np.linalg.norm(result.skeleton.xyz[0]) < 0.05
@@ -33,21 +31,21 @@ def test_a_textbook_tree_is_found_whole(cloud: Floats) -> None:
 
 
 def test_the_same_cloud_gives_the_same_tree_bit_for_bit(cloud: Floats) -> None:
-    here, there = (skeletonize(cloud, params=GROWTH).skeleton for _ in range(2))
+    here, there = (skeletonize(cloud).skeleton for _ in range(2))
     assert (here.xyz == there.xyz).all()
     assert (here.label == there.label).all()
 
 
 def test_where_the_origin_lies_changes_nothing(cloud: Floats) -> None:
     shift = np.array([431_204.5, 5_120_330.25, 212.0])
-    here, there = (skeletonize(xyz, params=GROWTH) for xyz in (cloud, cloud + shift))
+    here, there = (skeletonize(xyz) for xyz in (cloud, cloud + shift))
     assert np.allclose(there.skeleton.xyz - shift, here.skeleton.xyz, atol=1e-3)
 
 
 def test_of_two_trees_that_at_the_base_is_taken_and_the_other_left_out(cloud: Floats) -> None:
     row = np.concatenate([cloud, cloud + np.array([2.2, 0, 0])])
     for base in (0.0, 2.2):
-        result = skeletonize(row, [base, 0, 0], params=GROWTH)
+        result = skeletonize(row, [base, 0, 0])
         assert result.isolated is not None
         kind = result.isolated.kind.reshape(2, -1)[int(base > 0)]
         assert (kind == Kind.TARGET).mean() > 0.97
@@ -57,20 +55,20 @@ def test_of_two_trees_that_at_the_base_is_taken_and_the_other_left_out(cloud: Fl
 
 def test_what_was_isolated_is_the_tree_of_one_step(cloud: Floats) -> None:
     row = np.concatenate([cloud, cloud + np.array([2.2, 0, 0])])
-    one = skeletonize(row, [0, 0, 0], params=GROWTH)
-    two = skeletonize(row[one.isolated.target], params=GROWTH)
+    one = skeletonize(row, [0, 0, 0])
+    two = skeletonize(row[one.isolated.target])
     assert count(one.skeleton)[:3] == count(two.skeleton)[:3]
     assert abs(one.skeleton.lengths.sum() - two.skeleton.lengths.sum()) < 0.3
 
 
 def test_a_base_far_from_any_wood_is_refused(cloud: Floats) -> None:
     with pytest.raises(PrunusError, match="from the nearest wood"):
-        skeletonize(cloud, [3, 3, 0], params=GROWTH)
+        skeletonize(cloud, [3, 3, 0])
 
 
 def test_a_base_below_wood_that_weeds_hide_is_taken_with_a_note(cloud: Floats) -> None:
     above = cloud[cloud[:, 2] > 0.4]
-    result = skeletonize(above, [0, 0, 0], params=GROWTH)
+    result = skeletonize(above, [0, 0, 0])
     assert any("below the lowest wood in view, which was taken" in note for note in result.notes)
     assert count(result.skeleton)[2] == 4
 
@@ -78,12 +76,37 @@ def test_a_base_below_wood_that_weeds_hide_is_taken_with_a_note(cloud: Floats) -
 def test_noise_is_no_tree() -> None:
     noise = np.random.default_rng(1).uniform(0, 1.5, (20_000, 3))
     with pytest.raises(NoTreeError):
-        skeletonize(noise, params=GROWTH)
+        skeletonize(noise)
 
 
 def test_trees_of_the_simulator_are_mostly_found() -> None:
     truth, cloud = simulated(4)
-    found = skeletonize(cloud, params=GROWTH).skeleton
+    found = skeletonize(cloud).skeleton
     distance = np.linalg.norm(truth.xyz[:, None] - found.xyz[None], axis=2).min(axis=1)
     thick = truth.edges_with(Label.SUPPORT) | truth.edges_with(Label.LEADER)
     assert (distance[thick] < 0.05).mean() > 0.8
+
+
+def test_each_parameter_that_is_shown_changes_some_result() -> None:
+    """Of a row of two trees, one scanned much denser: points drawn, and what is the tree."""
+    some = surface_of(TEXTBOOK, np.random.default_rng(0))
+    near = np.random.default_rng(1).normal(0, 0.004, (60_000, 3)) + np.array([0, 0, 0.3])
+    row = np.concatenate([some, some + np.array([2.2, 0, 0]), near])
+    first = skeletonize(row, [0, 0, 0])
+    shown = [
+        (group, key)
+        for group in GROUPS["default"]
+        for key in getattr(Parameters(), group).model_dump()
+    ]
+    other = {
+        ("input", "points"): 20_000,
+        ("input", "draw"): "space",
+        ("isolation", "isolate"): "never",
+        ("isolation", "raw_from"): 0.95,
+    }
+    assert set(shown) == set(other)
+    for (group, key), value in other.items():
+        again = skeletonize(row, [0, 0, 0], Parameters().changed(group, **{key: value}))
+        same = np.array_equal(again.skeleton.xyz, first.skeleton.xyz)
+        whole = (again.isolated is None) == (first.isolated is None)
+        assert not (same and whole), f"{group}.{key}"

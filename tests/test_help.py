@@ -95,6 +95,7 @@ def test_what_is_shipped_is_printed_as_it_is_read(tmp_path: Path) -> None:
     for words, read, held in (
         (["rules"], CutRules.from_toml, shipped_rules()),
         (["params"], Parameters.from_toml, Parameters()),
+        (["params", "default"], Parameters.from_toml, Parameters()),
         (["params", "paper"], Parameters.from_toml, Parameters.paper()),
     ):
         (tmp_path / "printed.toml").write_text(prunus(*words).stdout)

@@ -7,7 +7,7 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from prunus import __version__
 from prunus.errors import PrunusError, describe
@@ -22,7 +22,6 @@ from prunus.io.skeletons import read_skeleton, sha256_of, write_skeleton
 from prunus.io.swc import write_swc
 from prunus.io.tables import csv_bytes, parquet_bytes, without_nan
 from prunus.io.trust import trust_record
-from prunus.kernels.compiled import is_compiled, mark_compiled
 from prunus.measure import branches
 from prunus.measure.cuts import plan_cuts
 from prunus.measure.defined import BRANCH_TRAITS, TREE_TRAITS
@@ -33,9 +32,10 @@ from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.report import report_page
 from prunus.result import Result, Seconds, timed
-from prunus.stages.confidence import EdgeScorer, HandmadeScorer
-from prunus.stages.networks import NetworkScorer
 from prunus.workers import side_by_side
+
+if TYPE_CHECKING:
+    from prunus.stages.confidence import EdgeScorer
 
 Record = dict[str, Any]
 """What `--json` prints of one tree: a `TreeRecord`."""
@@ -50,7 +50,7 @@ class Options:
     unit: str | None = None
     params: Parameters = field(default_factory=Parameters)
     seed: int = 0
-    scorer: str = "cnn"
+    scorer: str | None = None
     weights: Path | None = None
     report: bool = True
     traits: bool = False
@@ -99,22 +99,40 @@ def plan(inputs: list[Path], output: Path | None) -> tuple[list[Task], list[Reco
 def run(tasks: list[Task], options: Options, jobs: int) -> Iterator[Record]:
     """A record of each task as it is done; a bad file gives a record that says why.
 
-    One tree alone is done in this process, several in others, so that one of them may crash. The
-    first run of all works on one tree first, so that the kernels are compiled only once.
+    One tree alone is done in this process, several in others, so that one of them may crash. Where
+    kernels have to be compiled, the first run of all works on one tree first, so that that is done
+    only once.
     """
     if len(tasks) == 1:
         yield attempt(tasks[0], options)
         return
-    alone = 0 if is_compiled(_mode(options.params)) else 1
+    alone = 1 if _compiles(options.params) else 0
     for some, at_once in ((tasks[:alone], 1), (tasks[alone:], jobs)):
         with closing(side_by_side(partial(attempt, options=options), some, at_once)) as all_done:
             for done in all_done:
                 yield done.made or _gave(some[done.number], done.error)
 
 
+def _compiles(params: Parameters) -> bool:
+    """Whether the next run compiles kernels."""
+    if params.method == "default":
+        return False
+    from prunus.kernels.compiled import is_compiled
+
+    return not is_compiled(_mode(params))
+
+
+def _mark_compiled(params: Parameters) -> None:
+    """Remember what a run has compiled."""
+    if params.method != "default":
+        from prunus.kernels.compiled import mark_compiled
+
+        mark_compiled(_mode(params))
+
+
 def _mode(params: Parameters) -> str:
     """The choices on which it depends which kernels are run."""
-    return f"{params.superpoints.place} {params.confidence.edge_net} {params.search.score}"
+    return f"{params.superpoints.place} {params.confidence.edge_net} {params.method}"
 
 
 def attempt(task: Task, options: Options) -> Record:
@@ -143,19 +161,23 @@ def do(task: Task, options: Options) -> Record:
         _ = result.refined
     with timed(seconds, "trust"):
         _ = result.review
-    mark_compiled(_mode(options.params))
+    _mark_compiled(options.params)
     with timed(seconds, "write"):
         notes = write_all(task.folder, result, scan, options)
     return _record(task, result, scan, seconds, notes)
 
 
-def scorer_of(options: Options) -> EdgeScorer:
-    """The edge scorer that the options ask for: hand-made, a network of one's own, or ours."""
+def scorer_of(options: Options) -> EdgeScorer | None:
+    """The edge scorer that the options ask for; None: that of the method, which may have none."""
     if options.scorer == "handmade":
+        from prunus.stages.confidence import HandmadeScorer
+
         return HandmadeScorer()
     if options.weights is not None:
+        from prunus.stages.networks import NetworkScorer
+
         return NetworkScorer(options.weights)
-    return NetworkScorer.shipped(options.params.confidence.edge_net)
+    return None
 
 
 SOMETIMES = (

@@ -136,16 +136,19 @@ UnitOfFile = Annotated[
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of all that is random.")]
 Points = Annotated[
     str | None,
-    typer.Option("--points", help="Points drawn at random, or 'all'. [default: 50000]"),
+    typer.Option("--points", help="Points drawn at random, or 'all'. [default: 100000]"),
 ]
 ParamsFile = Annotated[
     Path | None,
-    typer.Option("--params", help="TOML as `prunus params` prints it; or 'paper', 'growth'."),
+    typer.Option("--params", help="TOML as `prunus params` prints it; or 'paper'."),
 ]
 Weights = Annotated[
     Path | None,
     typer.Option(
-        "--weights", exists=True, dir_okay=False, help="Your own network, by `prunus train`."
+        "--weights",
+        exists=True,
+        dir_okay=False,
+        help="Your own network of edges for the paper's method, by `prunus train`.",
     ),
 ]
 NoIsolate = Annotated[
@@ -198,7 +201,10 @@ def skeletonize(
     points: Points = None,
     params: ParamsFile = None,
     seed: Seed = 0,
-    scorer: Annotated[Scorer, typer.Option(help="Who gives the edge confidence.")] = Scorer.CNN,
+    scorer: Annotated[
+        Scorer | None,
+        typer.Option(help="Who gives the edge confidence in the paper's method. [default: cnn]"),
+    ] = None,
     weights: Weights = None,
     no_isolate: NoIsolate = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.html.")] = False,
@@ -229,8 +235,9 @@ def skeletonize(
         raise OptionError("--weights: of no use with --scorer handmade; expected one of them")
     options = Options(
         base, frame.value, unit and unit.value, _parameters(params, points, no_isolate), seed,
-        scorer.value, weights, not no_report, traits,
+        scorer and scorer.value, weights, not no_report, traits,
     )  # fmt: skip
+    _check_use(options.params, {"--scorer": scorer, "--weights": weights})
     tasks, failed = plan(clouds, output)
     _report(ctx.obj, tasks, failed, options, json, jobs)
 
@@ -270,13 +277,13 @@ def isolate(
     if output is not None:
         check_output(output, classes)
     waiting.doing(f"looking at {raw}")
-    opened = Opened.of(raw, frame.value, unit and unit.value, seed)
+    opened = Opened.of(raw, frame.value, unit and unit.value, seed, base)
     if output is None or list_:
         lines = list_trees(opened)
     elif every:
         lines = write_all(opened, output, classes)
     else:
-        lines = write_tree(opened, output, base, classes)
+        lines = write_tree(opened, output, classes)
     waiting.tell(lines)
 
 
@@ -321,6 +328,7 @@ def cuts(
         source, base, frame.value, unit and unit.value, scans,
         _parameters(params, points, no_isolate), seed, _network(weights),
     )  # fmt: skip
+    _check_use(wanted.params, {"--weights": weights})
     with blaming_the_command():
         by = shipped_rules() if rules is None else CutRules.from_toml(rules)
         wanted.check()
@@ -682,20 +690,21 @@ def rules(ctx: typer.Context) -> None:
 @app.command(rich_help_panel=SHIPPED)
 def params(
     ctx: typer.Context,
-    method: Annotated[EdgeNet, typer.Argument(help="Ours, or the method as the paper has it.")] = (
-        EdgeNet.OURS
+    method: Annotated[str, typer.Argument(help="default, or paper: as the paper has it.")] = (
+        "default"
     ),
 ) -> None:
-    """Print all parameters with symbol, unit and range, as `--params` reads them.
+    """Print the parameters of a method with symbol, unit and range, as `--params` reads them.
 
     To change them: `prunus params > mine.toml`
 
     Those of the paper: `prunus params paper`
     """
-    from prunus.params import Parameters
+    from prunus.params import GROUPS, Parameters
 
-    held = Parameters.paper() if method == EdgeNet.PAPER else Parameters()
-    ctx.obj.tell(held.to_toml().splitlines())
+    if method not in GROUPS:
+        raise OptionError(f"{method}: no method; expected default or paper")
+    ctx.obj.tell(Parameters(method=method).to_toml().splitlines())
 
 
 @app.command(rich_help_panel=SHIPPED)
@@ -719,25 +728,33 @@ def schema(
 
 def _network(weights: Path | None) -> NetworkScorer | None:
     """A network of one's own; OptionError where it is none, before anything is done."""
-    from prunus.stages.networks import NetworkScorer
-
     if weights is None:
         return None
+    from prunus.stages.networks import NetworkScorer
+
     network = NetworkScorer(weights)
     with blaming_the_command():
         network.check()
     return network
 
 
+def _check_use(params: Parameters, given: dict[str, object]) -> None:
+    """Raise OptionError where an option that was given is of no use to the method."""
+    from prunus.params import SCORES_NOTHING
+
+    for option, value in given.items():
+        if value is not None and params.method == "default":
+            raise OptionError(f"{option}: {SCORES_NOTHING}")
+
+
 def _parameters(path: Path | None, points: str | None, no_isolate: bool) -> Parameters:
-    from prunus.params import Parameters
+    from prunus.params import GROUPS, Parameters
 
     with blaming_the_command():
-        named = {"paper": Parameters.paper, "growth": Parameters.growth}.get(str(path))
         if path is None:
             params = Parameters()
-        elif named is not None and not path.exists():
-            params = named()
+        elif str(path) in GROUPS and not path.exists():
+            params = Parameters(method=str(path))
         else:
             params = Parameters.from_toml(path)
         if no_isolate:

@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from prunus import __version__
 from prunus.errors import NoTreeError, PrunusError, naming
+from prunus.geometry.near import within
 from prunus.intake import Scan, open_scan
 from prunus.io.names import names_of
 from prunus.io.original import original_of
 from prunus.io.plans import PlanFile
 from prunus.io.skeletons import InputRecord, read_record, read_skeleton, sha256_of
-from prunus.kernels.neighbours import within
 from prunus.measure.cuts import Cut, CutRules, Plan, plan_cuts
 from prunus.measure.cuts.plan import as_it_is
 from prunus.measure.cuts.reach import samples
@@ -26,7 +26,9 @@ from prunus.names import as_text
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.result import REFINED_WITH
-from prunus.stages.confidence import EdgeScorer
+
+if TYPE_CHECKING:
+    from prunus.stages.confidence import EdgeScorer
 
 SKELETONS = (".json", ".swc")
 OWN = 0.06

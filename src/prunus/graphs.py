@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +25,9 @@ from prunus.model.arrays import Shape, frozen
 from prunus.params import Parameters, checked_params, checked_seed
 from prunus.search import search
 from prunus.stages.seeds import find_tips
+
+SEARCH = Parameters.paper().changed("search", refine=True)
+"""The paper's search, and the best skeleton improved one edge at a time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,11 +59,17 @@ def search_graph(
     """Search the best labelled tree in a graph (sec. Population-based search).
 
     nodes (N, 3) metres, Z up, X along the row; edges (E, 2) undirected pairs of nodes; confidence
-    (E,) in [0, 1]; base and tips (T,) node indices, tips found as in the paper when None.
+    (E,) in [0, 1]; base and tips (T,) node indices, tips found as in the paper when None. params:
+    those of the paper's method; None: as in the paper, and then refined.
     Raises PrunusError naming the argument, what was found and what was expected, or where nothing
     can be grown from the base.
     """
-    params = checked_params(params)
+    params = checked_params(_of_search(params))
+    if params.method == "default":
+        raise PrunusError(
+            'params: of the method "default", which searches no graph; expected '
+            "those of Parameters.paper()"
+        )
     rng = np.random.default_rng(checked_seed(seed))
     graph = _checked_graph(nodes, edges, confidence, params)
     count = len(graph.xyz)
@@ -82,6 +93,16 @@ def search_graph(
     pairs = found.skeleton.superpoint[found.skeleton.edges]
     words = np.array([Label(label).word for label in found.skeleton.label[1:]], dtype=np.str_)
     return GraphSkeleton(pairs, words, found.score, found.history, found.skeleton.moved(back))
+
+
+def _of_search(params: Any) -> Any:
+    """Parameters that a caller gave; what nested dicts do not name is as in `SEARCH`."""
+    if params is None:
+        return SEARCH
+    if not isinstance(params, Mapping) or not isinstance(params.get("search", {}), Mapping):
+        return params
+    search = {"refine": True, **params.get("search", {})}
+    return {"method": "paper", **params, "search": search}
 
 
 def _checked_graph(

@@ -15,13 +15,11 @@ from prunus.field.votes import Threads, gather_votes
 from prunus.field.voxels import Voxels, voxels_of
 from prunus.growth.evidence import seeded_graph
 from prunus.growth.grow import Orchard
-from prunus.model import Floats, Ints, Kind, PointCloud, SeededGraph, Skeleton
+from prunus.model import Floats, Ints, Kind, PointCloud, SeededGraph, Skeleton, parents_first
 from prunus.params import Parameters
 from prunus.result import Seconds, timed
-from prunus.sensing.isolate import Isolated
+from prunus.sensing.isolated import Isolated
 
-MOST_POINTS = 100_000
-"""So many points, drawn at random, show what the network can see."""
 BASE_REACH_M = 0.30
 """A base that was given has a node so near,"""
 WEEDS_M = 1.0
@@ -30,6 +28,76 @@ BEHIND_M = 0.25
 """A tree that stands so much farther away is one behind."""
 GROUND_M = 0.05
 """What is no wood and lies so little above the foot is ground."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class View:
+    """A cloud, the points of it that were drawn, their voxels, and all trees that grow in it.
+
+    `notes`: what is to be said of a base that was given.
+    """
+
+    cloud: PointCloud
+    drawn: PointCloud
+    voxels: Voxels
+    orchard: Orchard
+    notes: list[str]
+
+    @classmethod
+    def of(
+        cls,
+        cloud: PointCloud,
+        at: Floats | None,
+        params: Parameters,
+        rng: np.random.Generator,
+        seconds: Seconds,
+    ) -> View:
+        """The trees of a cloud; meant is that at a base (3,), or at which the scanner looks.
+
+        NoTreeError where nothing is wood; PrunusError where the base is far from any.
+        """
+        with timed(seconds, "field"):
+            even = cloud.evened(rng) if params.input.draw == "space" else cloud
+            drawn = even.sample(params.input.count, rng)
+            voxels = voxels_of(drawn.xyz)
+            field = see_field(voxels)
+        with timed(seconds, "votes"):
+            threads = gather_votes(field)
+        if len(threads) == 0:
+            raise NoTreeError("no tree was found: nothing in the cloud looks like wood")
+        with timed(seconds, "growth"):
+            at, notes = _on_wood(threads, at, cloud)
+            orchard = Orchard.of(threads, at, alone=params.isolation.isolate == "never")
+        return cls(cloud=cloud, drawn=drawn, voxels=voxels, orchard=orchard, notes=notes)
+
+    def isolated(self, tree: Skeleton) -> Isolated:
+        """What each point of the cloud is to a tree."""
+        return Isolated(self._kinds(int(tree.superpoint[0])), tree.xyz[0], tree.xyz[0])
+
+    def tree(self) -> Skeleton:
+        """The tree that is meant."""
+        return _by_nodes(self.orchard.tree_at(self.orchard.main))
+
+    def graph(self, tree: Skeleton, alone: bool) -> SeededGraph:
+        """The graph of the threads and of that tree, with its points `alone`, or all."""
+        mine = np.ones(len(self.drawn), np.bool_)
+        if alone:
+            of_voxel = self.orchard.foot_of_voxel()
+            mine = of_voxel[self.voxels.of_point] == self.orchard.main
+        points, of_voxel = self.drawn.take(mine), self.voxels.of_point[mine]
+        return seeded_graph(points, of_voxel, self.voxels.xyz, self.orchard, tree)
+
+    def _kinds(self, base: int) -> Ints:
+        """What each point (P,) is to the tree that grows from a node (`Kind`)."""
+        row = self.voxels.holding(self.cloud.xyz)
+        foot = np.where(row >= 0, self.orchard.foot_of_voxel()[row], -1)
+        place = self.orchard.graph.threads.xyz
+        behind = place[foot, 1] > place[base, 1] + BEHIND_M
+        kind = np.where(behind, int(Kind.BEHIND), int(Kind.NEIGHBOUR))
+        kind[foot == base] = Kind.TARGET
+        low = self.cloud.xyz[:, 2] < place[base, 2] + GROUND_M
+        kind[foot < 0] = np.where(low, int(Kind.GROUND), int(Kind.STRAY))[foot < 0]
+        return kind
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -53,32 +121,32 @@ def grow_tree(
 
     NoTreeError where nothing is wood; PrunusError where the base is far from any.
     """
-    with timed(seconds, "field"):
-        drawn = cloud.sample(MOST_POINTS, rng)
-        voxels = voxels_of(drawn.xyz)
-        field = see_field(voxels)
-    with timed(seconds, "votes"):
-        threads = gather_votes(field)
-    if len(threads) == 0:
-        raise NoTreeError("no tree was found: nothing in the cloud looks like wood")
+    view = View.of(cloud, at, params, rng, seconds)
     with timed(seconds, "growth"):
-        at, notes = _on_wood(threads, at, cloud)
-        orchard = Orchard.of(threads, at, alone=params.isolation.isolate == "never")
-        skeleton = orchard.tree_at(orchard.main)
+        skeleton = view.tree()
     with timed(seconds, "isolate"):
-        isolated = Isolated(_kinds(cloud, voxels, orchard), skeleton.xyz[0], skeleton.xyz[0])
+        isolated = view.isolated(skeleton)
         raw = isolated.removed >= params.isolation.raw_from
         raw = {"auto": raw, "always": True, "never": False}[params.isolation.isolate]
-        mine = np.ones(len(drawn), np.bool_)
-        if raw:
-            mine = orchard.foot_of_voxel()[voxels.of_point] == orchard.main
-        graph = seeded_graph(drawn.take(mine), voxels.of_point[mine], voxels.xyz, orchard)
-    if raw:
-        notes.append(isolated.told())
+        graph = view.graph(skeleton, alone=raw)
+    notes = [*view.notes, isolated.told()] if raw else view.notes
     if at is None:
         place = cloud.words_for(skeleton.xyz[0])
-        notes.append(f"no base was given: the foot of the trunk was found at {place}")
+        notes = [*notes, f"no base was given: the foot of the trunk was found at {place}"]
     return Grown(skeleton=skeleton, graph=graph, isolated=isolated if raw else None, notes=notes)
+
+
+def _by_nodes(tree: Skeleton) -> Skeleton:
+    """The same tree with what hangs on one node in the order of nodes, as corrections have it."""
+    node = tree.superpoint
+    above = {int(node[row]): int(node[tree.parent[row]]) for row in range(1, len(tree))}
+    order, parent = parents_first(int(node[0]), dict(sorted(above.items())))
+    row_of = {one: row for row, one in enumerate(node.tolist())}
+    row = np.array([row_of[one] for one in order])
+    return Skeleton.build(
+        tree.xyz[row], parent, tree.label[row], confidence=tree.confidence[row],
+        radius=tree.radius[row], superpoint=order,
+    )  # fmt: skip
 
 
 def _on_wood(
@@ -103,17 +171,3 @@ def _on_wood(
     lowest = int(above[away[above, 2].argmin()])
     note = f"the base {shown} is {away[lowest, 2]:.2f} m below the lowest wood in view"
     return threads.xyz[lowest], [f"{note}, which was taken"]
-
-
-def _kinds(cloud: PointCloud, voxels: Voxels, orchard: Orchard) -> Ints:
-    """What each point (P,) of a cloud is to the tree that is meant (`Kind`)."""
-    row = voxels.holding(cloud.xyz)
-    foot = np.where(row >= 0, orchard.foot_of_voxel()[row], -1)
-    place = orchard.graph.threads.xyz
-    base = place[orchard.main]
-    behind = place[foot, 1] > base[1] + BEHIND_M
-    kind = np.where(behind, int(Kind.BEHIND), int(Kind.NEIGHBOUR))
-    kind[foot == orchard.main] = Kind.TARGET
-    low = cloud.xyz[:, 2] < base[2] + GROUND_M
-    kind[foot < 0] = np.where(low, int(Kind.GROUND), int(Kind.STRAY))[foot < 0]
-    return kind

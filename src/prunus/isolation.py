@@ -8,57 +8,73 @@ from pathlib import Path
 import numpy as np
 
 from prunus.errors import NoTreeError, naming
+from prunus.grown import View
 from prunus.intake import Scan, open_scan
 from prunus.io.classes import check_ply, write_classes
 from prunus.io.clouds import FileCloud, check_kind, write_cloud
-from prunus.model import Floats
+from prunus.model import Floats, Skeleton
 from prunus.params import Parameters
-from prunus.plausible import LEAST_LINEAR
+from prunus.plausible import LEAST_LENGTH_M, LEAST_LINEAR
 from prunus.sensing.diagnosis import explaining
-from prunus.sensing.isolate import Isolated, Scene, check_at, isolate, look_at
+from prunus.sensing.isolated import Isolated
 
 
 @dataclass(frozen=True, eq=False)
 class Opened:
-    """A raw scan from a file, and what isolation sees in it."""
+    """A raw scan from a file, the trees that grow in it, and notes on where one was asked for."""
 
     scan: Scan
-    scene: Scene
+    view: View
 
     @classmethod
-    def of(cls, path: Path, frame: str, unit: str | None, seed: int) -> Opened:
-        """Read a file and look at it. PrunusError naming it where it is none."""
+    def of(
+        cls,
+        path: Path,
+        frame: str,
+        unit: str | None,
+        seed: int,
+        at: tuple[float, float, float] | None = None,
+    ) -> Opened:
+        """Read a file and look at it; meant is the tree at a point of the file's frame.
+
+        PrunusError naming the file where it is none, or the point is far from all wood;
+        NoTreeError where nothing is wood.
+        """
         scan = open_scan(path, frame, unit)
         with naming(path), explaining(scan.cloud):
-            return cls(scan, look_at(scan.cloud, Parameters(), np.random.default_rng(seed)))
+            base = None if at is None else scan.cloud.to_input.inverse().apply(at)
+            rng = np.random.default_rng(seed)
+            return cls(scan, View.of(scan.cloud, base, Parameters(), rng, {}))
 
     def place(self, point: Floats) -> Floats:
         """A point of the house frame (3,) in the frame of the file."""
         return self.scan.cloud.to_input.apply(point)
 
-    def tree_at(self, at: tuple[float, float, float] | None) -> Isolated:
-        """The tree at a point of the file's frame; None: the likeliest. NoTreeError: it is none."""
+    def tree(self) -> Isolated:
+        """The tree that is meant; NoTreeError: it is none."""
         with naming(self.scan.file.path), explaining(self.scan.cloud):
-            point = None
-            if at is not None:
-                point = self.scan.cloud.to_input.inverse().apply(at)
-                check_at(self.scene, point)
-            found = isolate(self.scene, point)
-            if not self.has_branches(found):
-                raise NoTreeError("no tree was found, but a surface or a heap")
-            return found
+            tree = self.view.tree()
+            if not is_tree(tree):
+                raise NoTreeError("no tree was found: hardly any branches, or a surface or a heap")
+            return self.view.isolated(tree)
 
     def trees(self) -> list[Isolated]:
-        """The trees in view, the likeliest first; NoTreeError where there is none."""
-        with naming(self.scan.file.path), explaining(self.scan.cloud):
-            found = [tree for tree in self.scene.trees if self.has_branches(tree)]
-            if not found:
-                raise NoTreeError("no tree was found: no trunk with branches is in view")
-            return found
+        """The trees in view, that which is meant first; NoTreeError where there is none."""
+        orchard = self.view.orchard
+        feet = sorted(orchard.feet.tolist(), key=lambda foot: foot != orchard.main)
+        grown = [orchard.tree_at(foot) for foot in feet]
+        found = [self.view.isolated(tree) for tree in grown if is_tree(tree)]
+        if not found:
+            with naming(self.scan.file.path), explaining(self.scan.cloud):
+                raise NoTreeError("no tree was found: no foot with branches is in view")
+        return found
 
-    def has_branches(self, tree: Isolated) -> bool:
-        """Whether what was taken for a tree looks like branches."""
-        return self.scene.linearity(tree) >= LEAST_LINEAR
+
+def is_tree(skeleton: Skeleton) -> bool:
+    """Whether what grew from a foot is enough, and sure enough, to be a tree."""
+    if len(skeleton) == 1 or skeleton.lengths.sum() < LEAST_LENGTH_M:
+        return False
+    return bool(np.median(skeleton.confidence[1:]) >= LEAST_LINEAR)
 
 
 def check_output(path: Path, classes: bool) -> None:
@@ -69,13 +85,11 @@ def check_output(path: Path, classes: bool) -> None:
         check_kind(path)
 
 
-def write_tree(
-    opened: Opened, output: Path, at: tuple[float, float, float] | None, classes: bool
-) -> list[str]:
-    """Write the tree at a point, or all points with their classes; what to say of it."""
-    isolated = opened.tree_at(at)
+def write_tree(opened: Opened, output: Path, classes: bool) -> list[str]:
+    """Write the tree that is meant, or all points with their classes; what to say of it."""
+    isolated = opened.tree()
     _write(output, opened.scan.file, isolated, classes)
-    said = [_standing(opened, isolated), isolated.told(), *isolated.doubts()]
+    said = [*opened.view.notes, _standing(opened, isolated), isolated.told()]
     return [*opened.scan.notes, *said]
 
 

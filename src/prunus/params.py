@@ -14,8 +14,10 @@ from pydantic import (
     BaseModel,
     ConfigDict,
     Field,
+    SerializerFunctionWrapHandler,
     ValidationInfo,
     field_validator,
+    model_serializer,
     model_validator,
 )
 
@@ -23,6 +25,7 @@ from prunus.errors import PrunusError
 from prunus.reading import in_words, read_toml
 
 PI = math.pi
+Method = Literal["default", "paper", "learned"]
 
 
 def _number(default: Any, symbol: str, unit: str, about: str, **limits: Any) -> Any:
@@ -57,12 +60,17 @@ class Input(_Group):
     """What is read of the cloud (docs/method.md)."""
 
     points: Annotated[int, Field(ge=1)] | Literal["all"] = _number(
-        50_000, "P", "points", "points >= 1 drawn at random from the cloud, or 'all'"
+        100_000, "P", "points", "points >= 1 drawn at random from the cloud, or 'all'"
     )
     draw: Literal["space", "points"] = _number(
         "points", "draw", "space, points", "space: places much denser than most give no more than "
         "their share; points: each point is as likely as any other, as in the paper"
     )  # fmt: skip
+
+    @property
+    def count(self) -> int | None:
+        """The number of points; None: all."""
+        return None if self.points == "all" else self.points
 
     @field_validator("points", mode="before")
     @classmethod
@@ -143,14 +151,7 @@ class Grow(_Group):
 
 
 class Search(_Group):
-    """The search; all but `score` is of the population-based one."""
-
-    score: Literal["learned", "paper", "growth"] = _number(
-        "learned", "-", "-",
-        "'paper': SkelScore and the population-based search; 'learned': beyond it, all labels at "
-        "once (a scorer that tells no categories gets the paper's); 'growth': no search, the tree "
-        "grows on the votes of the point field (new, not the default yet)",
-    )  # fmt: skip
+    """The population-based search."""
 
     K: int = _number(500, "K", "skeletons", "size of the population", ge=1, le=100_000)
     k_max_rep: int = _number(
@@ -196,12 +197,49 @@ class SideBranches(_Group):
         return self
 
 
-class Parameters(_Group):
-    """All parameters, one frozen group a stage.
+_SHARED = ("input", "isolation")
+_SEARCHED = (
+    *_SHARED, "superpoints", "confidence", "tips", "turn", "grow", "search", "leaders",
+    "side_branches",
+)  # fmt: skip
+SCORES_NOTHING = (
+    'of no use to the method "default", which scores no edges; expected it beside parameters of '
+    'method = "paper" (--params paper) alone'
+)
 
-    Numbers of the paper have its values; what goes beyond it can be switched off (`paper()`).
+GROUPS: dict[Method, tuple[str, ...]] = {
+    "default": _SHARED,
+    "paper": _SEARCHED,
+    "learned": _SEARCHED,
+}
+"""The groups of parameters by which each method goes."""
+
+_OWN: dict[Method, dict[str, dict[str, Any]]] = {
+    "default": {},
+    "paper": {
+        "input": {"points": 50_000},
+        "isolation": {"isolate": "never"},
+        "superpoints": {"place": "random"},
+        "confidence": {"floor": 0.0, "edge_net": "paper"},
+        "search": {"refine": False},
+        "leaders": {"min_length": 0.0},
+        "side_branches": {"several": False},
+    },
+    "learned": {"input": {"points": 50_000}},
+}
+"""Where the defaults of a method are others than those of the groups."""
+
+
+class Parameters(_Group):
+    """The method, and its parameters, one frozen group a stage.
+
+    A method goes by its own groups (`GROUPS`); one of another method is refused. Numbers of the
+    paper have its values; what goes beyond it is switched off in `paper()`.
     """
 
+    method: Method = Field(
+        "default", description="how a tree is found: 'default' (docs/growth.md) or 'paper'"
+    )
     input: Input = Input()
     isolation: Isolation = Isolation()
     superpoints: Cover = Cover()
@@ -214,26 +252,45 @@ class Parameters(_Group):
     side_branches: SideBranches = SideBranches()
 
     def __init__(self, **groups: Any) -> None:
-        """The groups as such, or as dicts; PrunusError naming the field otherwise."""
+        """The method and groups as such, or as dicts; PrunusError naming the field otherwise."""
         with in_words("params", type(self), noun="parameter"):
             super().__init__(**groups)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_one_method(cls, values: Any) -> Any:
+        """What is not named is as the method has it; what it does not go by is refused."""
+        if not isinstance(values, Mapping):
+            return values
+        values, defaults = _of_older(dict(values))
+        method = values.get("method", "default")
+        if not isinstance(method, str) or method not in GROUPS:
+            return values
+        for name, field in cls.model_fields.items():
+            if name not in values or name in ("method", *GROUPS[method]):
+                continue
+            if not isinstance(values[name], _Group) or values[name] != field.default:
+                raise ValueError(_foreign(name, method))
+        for name, own in _OWN[defaults or method].items():
+            given = values.get(name, {})
+            values[name] = {**own, **given} if isinstance(given, Mapping) else given
+        return values
+
+    @model_serializer(mode="wrap")
+    def _told(self, dumped: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """The method, and the groups by which it goes."""
+        every = dumped(self)
+        return {name: every[name] for name in ("method", *GROUPS[self.method])}
 
     @classmethod
     def paper(cls) -> Parameters:
         """The method as the paper has it, without what we do beyond it."""
-        return cls(
-            isolation=Isolation(isolate="never"),
-            superpoints=Cover(place="random"),
-            confidence=Confidence(floor=0.0, edge_net="paper"),
-            search=Search(score="paper", refine=False),
-            leaders=Leaders(min_length=0.0),
-            side_branches=SideBranches(several=False),
-        )
+        return cls(method="paper")
 
     @classmethod
-    def growth(cls) -> Parameters:
-        """The chain that votes for the axes of branches and grows the tree on them."""
-        return cls(search=Search(score="growth"))
+    def learned(cls) -> Parameters:
+        """What was the default before; it goes away."""
+        return cls(method="learned")
 
     @classmethod
     def parse(cls, values: Any, source: str = "params") -> Parameters:
@@ -253,15 +310,19 @@ class Parameters(_Group):
         return cls.parse(read_toml(path), str(path))
 
     def changed(self, group: str, **values: Any) -> Parameters:
-        """The same parameters with some values of one group replaced."""
+        """The same parameters with some values of one group replaced.
+
+        PrunusError where a value is out of bounds, or the method does not go by that group.
+        """
         nested = self.model_dump()
         nested[group] = nested.get(group, {}) | values
         return Parameters.parse(nested)
 
     def to_toml(self) -> str:
         """The file that `from_toml` reads, each value with symbol, unit, range and meaning."""
-        lines = []
-        for name in type(self).model_fields:
+        about = type(self).model_fields["method"].description
+        lines = [f"method = {json.dumps(self.method)}  # {about}", ""]
+        for name in GROUPS[self.method]:
             group: BaseModel = getattr(self, name)
             lines += [f"# {(type(group).__doc__ or '').strip()}", f"[{name}]"]
             for key, field in type(group).model_fields.items():
@@ -270,6 +331,31 @@ class Parameters(_Group):
                 lines.append(f"{key} = {shown}  # {_about(field)}")
             lines.append("")
         return "\n".join(lines)
+
+
+def _of_older(values: dict[str, Any]) -> tuple[dict[str, Any], Method | None]:
+    """Values in which `search.score` chose the method, as files had it before there was `method`.
+
+    With them the method whose defaults hold for what they do not name: that of then; None: as now.
+    """
+    search = values.get("search")
+    if "method" in values or not isinstance(search, Mapping) or "score" not in search:
+        return values, None
+    if search["score"] not in ("learned", "paper"):
+        raise ValueError(
+            f"search.score: found {search['score']!r}; expected no score, but, above all groups, "
+            'method = "default" or "paper"'
+        )
+    rest = {name: value for name, value in search.items() if name != "score"}
+    return values | {"method": search["score"], "search": rest}, "learned"
+
+
+def _foreign(group: str, method: Method) -> str:
+    goes_by = ", ".join(GROUPS[method])
+    return (
+        f'the method "{method}" does not go by [{group}], but by {goes_by}; [{group}] is of '
+        'method = "paper"'
+    )
 
 
 def checked_params(params: Any) -> Parameters:

@@ -15,7 +15,6 @@ from prunus.measure.remarks import explained_points
 from prunus.model import Label, Skeleton
 from prunus.result import Result
 from prunus.sensing.diagnosis import LINE_M, STEP_M, coarse_words, coarseness, spread
-from prunus.sensing.surroundings import Pieces
 from prunus.sensing.trunks import find_trunks
 
 # The limits were set on simulated and drawn clouds alone, by `python -m bench.plausible`: 142 scans
@@ -71,9 +70,12 @@ class Evidence:
         skeleton, graph = result.in_house, result.graph
         length, explained = float(skeleton.lengths.sum()), explained_points(skeleton, graph)
         trunk, trust = True, 1.0
-        if result.params.search.score == "growth":
+        if result.params.method == "default":
             linear = float(np.median(skeleton.confidence[1:])) if len(skeleton) > 1 else 0.0
         else:
+            # Here, since it takes a compiler.
+            from prunus.sensing.surroundings import Pieces
+
             linear = float(np.median(Pieces.of(graph.scored).linear))
             trunk = not graph.scored.category.size or bool(find_trunks(graph.scored))
         if explained < MOST_EXPLAINED and result.trust is not None:

@@ -16,9 +16,7 @@ from prunus.measure.trust import Known, Trust, trust_in
 from prunus.measure.trust.review import review_of
 from prunus.model import Floats, Label, PointCloud, SeededGraph, Skeleton
 from prunus.params import Parameters
-from prunus.search import goes_by_learned_score, shipped_score
-from prunus.search.judged import judged
-from prunus.sensing.isolate import Isolated
+from prunus.sensing.isolated import Isolated
 
 REFINED_WITH = 150_000
 """So many points of the tree, drawn at random, are enough to refine its skeleton."""
@@ -41,13 +39,14 @@ def timed(seconds: Seconds, stage: str) -> Iterator[None]:
 class Result:
     """The skeleton and the evidence: graph, score, history (I,) of best scores, timings, warnings.
 
+    The score is None, and the history empty, where the method goes by none.
     `in_house` is the skeleton in the house frame (Z up); `skeleton` in the frame of the input.
     `scan` is all that was given; `isolated` what each point of it is, where it was a raw scan.
     """
 
     in_house: Skeleton
     graph: SeededGraph
-    score: float
+    score: float | None
     history: Floats
     seconds: Seconds
     params: Parameters
@@ -87,7 +86,13 @@ class Result:
     @cached_property
     def trust(self) -> Trust | None:
         """How far to trust it; None where it was not found by the learned score."""
-        if len(self.in_house) == 1 or not goes_by_learned_score(self.graph, self.params):
+        if len(self.in_house) == 1 or self.params.method != "learned":
+            return None
+        # Here, since it takes a compiler.
+        from prunus.search import goes_by_learned_score, shipped_score
+        from prunus.search.judged import judged
+
+        if not goes_by_learned_score(self.graph, self.params):
             return None
         told = judged(self.in_house, self.graph, shipped_score())
         raw = self.isolated is not None

@@ -2,21 +2,23 @@
 
 import json
 from dataclasses import fields, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from prunus import intake, pipeline
+from prunus import grown, intake
 from prunus.corrections import Rebuild, RemoveBranch, Search, SetStatus, Work
 from prunus.corrections.graphfile import read_graph, rows_of, write_graph
 from prunus.corrections.graphs import Graphs
 from prunus.corrections.sources import superpoints_digest
 from prunus.errors import PrunusError
+from prunus.field.voxels import voxels_of
 from prunus.io.arrays import read_arrays, write_arrays
-from prunus.model import PointCloud, Skeleton, Superpoints
-from prunus.params import Cover, Parameters
+from prunus.model import PointCloud, Skeleton
+from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.result import Result
 from prunus.sensing.stance import Stance
@@ -44,13 +46,8 @@ def raw() -> Result:
 
 @pytest.fixture
 def another_chain(monkeypatch: pytest.MonkeyPatch) -> None:
-    """From when it is asked for on, the chain finds other superpoints."""
-
-    def sparser(cloud: PointCloud, params: Cover, rng: np.random.Generator) -> Superpoints:
-        return before(cloud, params.model_copy(update={"along": 1.4 * params.along}), rng)
-
-    before = pipeline.find_superpoints
-    monkeypatch.setattr(pipeline, "find_superpoints", sparser)
+    """From when it is asked for on, the chain finds other nodes."""
+    monkeypatch.setattr(grown, "voxels_of", partial(voxels_of, size=0.025))
 
 
 def files(folder: Path) -> dict[str, bytes]:
@@ -69,6 +66,15 @@ def test_what_was_written_is_read(raw: Result, tmp_path: Path, rival: np.ndarray
     for name in ("in_house", "isolated", "score", "history", "warnings", "notes", "scan", "seed"):
         assert same(getattr(again, name), getattr(raw, name)), name
     assert same(again.graph, raw.graph)
+
+
+def test_a_graph_of_balls_keeps_no_points_and_finds_them_again(tmp_path: Path) -> None:
+    cloud = field_scan(4).target_cloud().sample(8000, np.random.default_rng(0))
+    found = skeletonize(cloud, params=Parameters.learned())
+    write_graph(tmp_path / "graph.npz", found)
+    assert "members" not in read_arrays(tmp_path / "graph.npz")[0]
+    again = read_graph(tmp_path / "graph.npz").result(found.scan, found.params, found.seed)
+    assert same(again.graph, found.graph)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -258,7 +264,10 @@ def test_a_graph_of_another_tree_is_passed_over(
         ("xyz", None, "holds no xyz"),
         ("xyz", lambda a: a * np.nan, "xyz: holds NaN"),
         ("xyz", lambda a: a[:, :2], "xyz: expected superpoints"),
-        ("xyz", lambda a: a[:-1], r"expected numbers from 0|shape .* expected \("),
+        ("xyz", lambda a: a[:-1], r"expected numbers from 0|held: expected"),
+        ("held", lambda a: a[:-1], "held: expected how many"),
+        ("members", lambda a: a[:-1], "held: expected how many"),
+        ("members", lambda a: a + 99_999, "members: expected numbers"),
         ("wood", lambda a: a[:-1], r"shape .*; expected \("),
         ("steps", lambda a: a + 9_999, "steps: expected numbers from 0"),
         ("steps", lambda a: -a - 1, "steps: expected numbers from 0"),

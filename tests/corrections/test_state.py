@@ -7,9 +7,9 @@ import pytest
 
 from prunus.corrections import Brush, Class, Mark, MoveBase, PickBase, Rebuild, Refused, RemoveEdge
 from prunus.corrections.state import State, apply
+from prunus.grown import View
 from prunus.model import Kind
 from prunus.pipeline import skeletonize
-from prunus.sensing.isolate import look_at
 from tests.conftest import field_scan
 from tests.corrections.trees import node, outside, state
 
@@ -39,7 +39,8 @@ def test_isolation_says_what_each_point_is_before_anyone_does() -> None:
 
 def test_the_base_of_another_tree_gives_that_tree() -> None:
     at = raw()
-    trees = look_at(at.scan, at.params, np.random.default_rng(0)).trees
+    view = View.of(at.scan, None, at.params, np.random.default_rng(0), {})
+    trees = [view.isolated(view.orchard.tree_at(foot)) for foot in view.orchard.feet.tolist()]
     others = [t for t in trees if np.linalg.norm(t.foot - at.draft.places[at.draft.base]) > 0.5]
     base = max(others, key=lambda tree: tree.target.sum()).base
     after = apply(apply(at, PickBase(outside(at, base))), Rebuild())

@@ -1,11 +1,13 @@
 """Laws of the whole chain, over simulated trees and seeds."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
-from prunus.model import PointCloud, Skeleton
+from prunus.evaluate.curves import curve_measures
+from prunus.model import Floats, PointCloud, Skeleton
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.result import Result
@@ -13,14 +15,26 @@ from prunus.rules import offenders
 from prunus.search import learned_score_of, shipped_score, skel_score
 from tests.conftest import simulated
 
-SMALL = Parameters().changed("search", K=60)
+METHODS = {
+    "default": Parameters(),
+    "paper": Parameters.paper().changed("search", K=20),
+    "learned": Parameters.learned(),
+}
 SEEDS = [0, 1, 2, 3]
+every_tree = pytest.mark.parametrize("seed", SEEDS)
+every_method = pytest.mark.parametrize("method", METHODS)
 
 
 @cache
-def result(seed: int) -> Result:
+def result(seed: int, method: str = "default") -> Result:
     truth, cloud = simulated(seed)
-    return skeletonize(cloud, truth.xyz[0], SMALL, seed)
+    return skeletonize(cloud, truth.xyz[0], METHODS[method], seed)
+
+
+def points_of(seed: int) -> tuple[Floats, Floats]:
+    """The points of a scan (P, 3) and the base of its tree (3,), in its own frame."""
+    truth, cloud = simulated(seed)
+    return cloud.to_input.apply(cloud.xyz), truth.xyz[0]
 
 
 def same_decisions(first: Skeleton, second: Skeleton) -> bool:
@@ -30,17 +44,31 @@ def same_decisions(first: Skeleton, second: Skeleton) -> bool:
     )
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_every_result_is_a_legal_tree_rooted_at_the_base(seed: int) -> None:
-    found = result(seed)
-    assert offenders(found.skeleton) == {}
+@every_method
+@every_tree
+def test_every_result_is_a_tree_rooted_at_the_base(seed: int, method: str) -> None:
+    found = result(seed, method)
     assert found.skeleton.superpoint[0] == found.graph.base
     assert len(np.unique(found.skeleton.superpoint)) == len(found.skeleton)
+    assert (found.skeleton.parent[1:] < np.arange(1, len(found.skeleton))).all()
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_every_edge_is_a_candidate_with_its_confidence(seed: int) -> None:
-    found = result(seed)
+@every_tree
+def test_labels_never_step_back_and_one_trunk_starts_at_the_base(seed: int) -> None:
+    """Other rules cost the default something, and no more: true trees break them as well."""
+    assert not {"label_progression", "one_trunk_at_base"} & set(offenders(result(seed).skeleton))
+
+
+@pytest.mark.parametrize("method", ["paper", "learned"])
+@every_tree
+def test_as_in_the_paper_no_rule_is_broken(seed: int, method: str) -> None:
+    assert offenders(result(seed, method).skeleton) == {}
+
+
+@pytest.mark.parametrize("method", ["paper", "learned"])
+@every_tree
+def test_every_edge_is_a_candidate_with_its_confidence(seed: int, method: str) -> None:
+    found = result(seed, method)
     known = {
         (int(i), int(j)): c
         for (i, j), c in zip(found.graph.edges, found.graph.confidence, strict=True)
@@ -51,68 +79,95 @@ def test_every_edge_is_a_candidate_with_its_confidence(seed: int) -> None:
         assert known[i, j] == c
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_the_score_is_the_sum_of_its_terms(seed: int) -> None:
-    found = result(seed)
+@every_tree
+def test_the_learned_score_is_the_sum_of_its_terms(seed: int) -> None:
+    found = result(seed, "learned")
     told = learned_score_of(found.in_house, found.graph, shipped_score())
     assert found.score == pytest.approx(told, abs=1e-6)
     assert (np.diff(found.history) >= 0).all()
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@every_tree
 def test_as_in_the_paper_the_score_is_the_sum_of_the_rewards(seed: int) -> None:
+    found = result(seed, "paper")
+    assert found.score == pytest.approx(skel_score(found.in_house, found.params))
+
+
+def test_the_default_goes_by_no_score() -> None:
+    assert result(0).score is None
+    assert len(result(0).history) == 0
+
+
+@every_method
+@every_tree
+def test_the_same_seed_gives_the_same_skeleton_bit_for_bit(seed: int, method: str) -> None:
     truth, cloud = simulated(seed)
-    params = Parameters.paper().changed("search", K=60)
-    found = skeletonize(cloud, truth.xyz[0], params, seed)
-    assert found.score == pytest.approx(skel_score(found.in_house, params))
-    assert offenders(found.skeleton) == {}
+    again, first = skeletonize(cloud, truth.xyz[0], METHODS[method], seed), result(seed, method)
+    assert same_decisions(again.skeleton, first.skeleton)
+    assert np.array_equal(again.skeleton.xyz, first.skeleton.xyz)
+    assert np.array_equal(again.history, first.history)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_the_same_seed_gives_the_same_skeleton_bit_for_bit(seed: int) -> None:
-    truth, cloud = simulated(seed)
-    again = skeletonize(cloud, truth.xyz[0], SMALL, seed)
-    assert same_decisions(again.skeleton, result(seed).skeleton)
-    assert np.array_equal(again.skeleton.xyz, result(seed).skeleton.xyz)
-    assert np.array_equal(again.history, result(seed).history)
+@every_method
+def test_another_seed_draws_other_points(method: str) -> None:
+    truth, cloud = simulated(1)
+    few = METHODS[method].changed("input", points=8000)
+    one, other = (skeletonize(cloud, truth.xyz[0], few, seed) for seed in (1, 101))
+    assert not np.array_equal(one.graph.xyz, other.graph.xyz)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_another_seed_gives_other_superpoints(seed: int) -> None:
-    truth, cloud = simulated(seed)
-    other = skeletonize(cloud, truth.xyz[0], SMALL, seed + 100)
-    assert not np.array_equal(other.graph.xyz, result(seed).graph.xyz)
-
-
-@pytest.mark.parametrize("seed", SEEDS)
+@every_method
+@every_tree
 @pytest.mark.parametrize("shift", [(3.0, -7.25, 100.5), (612_345.0, 5_123_456.0, 321.0)])
-def test_moving_the_cloud_moves_the_skeleton(seed: int, shift: tuple[float, ...]) -> None:
-    truth, cloud = simulated(seed)
-    points = cloud.to_input.apply(cloud.xyz)
-    moved = skeletonize(points + np.array(shift), truth.xyz[0] + shift, SMALL, seed)
-    still = skeletonize(points, truth.xyz[0], SMALL, seed)
+def test_moving_the_cloud_moves_the_skeleton(
+    seed: int, shift: tuple[float, ...], method: str
+) -> None:
+    points, base = points_of(seed)
+    params = METHODS[method]
+    moved = skeletonize(points + np.array(shift), base + shift, params, seed)
+    still = skeletonize(points, base, params, seed)
     assert same_decisions(moved.skeleton, still.skeleton)
     assert moved.skeleton.xyz == pytest.approx(still.skeleton.xyz + shift, abs=1e-5, rel=0)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_turning_the_cloud_half_round_turns_the_skeleton(seed: int) -> None:
-    truth, cloud = simulated(seed)
-    points = cloud.to_input.apply(cloud.xyz)
+@pytest.mark.parametrize("method", ["paper", "learned"])
+@every_tree
+def test_turning_the_cloud_half_round_turns_the_skeleton(seed: int, method: str) -> None:
+    points, base = points_of(seed)
     half = np.array([-1.0, -1.0, 1.0])
-    turned = skeletonize(points * half, truth.xyz[0] * half, SMALL, seed)
-    still = skeletonize(points, truth.xyz[0], SMALL, seed)
+    turned = skeletonize(points * half, base * half, METHODS[method], seed)
+    still = skeletonize(points, base, METHODS[method], seed)
     assert same_decisions(turned.skeleton, still.skeleton)
     assert turned.skeleton.xyz == pytest.approx(still.skeleton.xyz * half, abs=1e-9)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_a_named_frame_changes_nothing_but_coordinates(seed: int) -> None:
-    truth, cloud = simulated(seed)
+@every_tree
+@pytest.mark.parametrize("turn", [(-1.0, -1.0, 1.0), (-1.0, 1.0, 1.0)], ids=["half", "mirror"])
+def test_a_tree_seen_from_behind_or_in_a_mirror_is_the_same_tree(
+    seed: int, turn: tuple[float, ...]
+) -> None:
+    """Voxels lie otherwise then, so within a tolerance. Measured on these four trees, both ways:
+    geometry alike within 5 cm on 0.974 of the length at least, length within 2.3 %, supports and
+    leaders by their labels on 0.82, feet 21 mm apart at most."""
+    points, base = points_of(seed)
+    seen = skeletonize(points * turn, base * turn, seed=seed).skeleton
+    seen = replace(seen, xyz=seen.xyz * turn)
+    still = skeletonize(points, base, seed=seed).skeleton
+    alike = curve_measures(seen, still)
+    assert min(alike["geometry_recall"], alike["geometry_precision"]) > 0.96
+    assert seen.lengths.sum() == pytest.approx(still.lengths.sum(), rel=0.04)
+    for label in ("support", "leader"):
+        assert min(alike[f"{label}_recall"], alike[f"{label}_precision"]) > 0.75
+    assert np.linalg.norm(seen.xyz[0] - still.xyz[0]) < 0.03
+
+
+@every_method
+@every_tree
+def test_a_named_frame_changes_nothing_but_coordinates(seed: int, method: str) -> None:
+    points, base = points_of(seed)
     to_optical = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
-    points = cloud.to_input.apply(cloud.xyz)
     seen = PointCloud.from_xyz(points @ to_optical.T, "optical")
-    found = skeletonize(seen, to_optical @ truth.xyz[0], SMALL, seed)
-    still = skeletonize(points, truth.xyz[0], SMALL, seed)
+    found = skeletonize(seen, to_optical @ base, METHODS[method], seed)
+    still = skeletonize(points, base, METHODS[method], seed)
     assert same_decisions(found.skeleton, still.skeleton)
     assert found.skeleton.xyz == pytest.approx(still.skeleton.xyz @ to_optical.T, abs=1e-9)

@@ -31,7 +31,7 @@ from prunus.simulate.orchard import simulate_tree  # noqa: E402
 from prunus.stages.candidates import find_candidates  # noqa: E402
 from prunus.stages.networks import NetworkScorer, shipped_or_own  # noqa: E402
 
-PARAMS = Parameters().changed("input", points=8000)
+PARAMS = Parameters.learned().changed("input", points=8000)
 LABELS = 60
 
 

@@ -31,7 +31,7 @@ from tests.conftest import field_scan  # noqa: E402
 def graph(seed: int) -> CandidateGraph:
     rng = np.random.default_rng(seed)
     cloud = field_scan(seed).target_cloud().sample(15_000, rng)
-    return find_candidates(find_superpoints(cloud, Parameters().superpoints, rng))
+    return find_candidates(find_superpoints(cloud, Parameters.learned().superpoints, rng))
 
 
 @cache

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from prunus.kernels.neighbours import nearest
+from prunus.geometry.near import nearest
 from prunus.measure import branches
 from prunus.measure.radii import Unknown
 from prunus.measure.refine import Refined, refined

@@ -10,6 +10,7 @@ import pytest
 
 from prunus.measure import branches
 from prunus.measure.cuts import Plan, plan_cuts
+from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.report import report_page
 from prunus.report.cuts import cut_traces
@@ -75,8 +76,17 @@ def test_a_tree_of_one_node_has_no_refined_lines(found: Result) -> None:
 
 
 def test_tables_hold_leaders_times_and_parameters(page: str, found: Result) -> None:
-    for text in ("Leaders, from left to right", "Time by stage", "r_super = 0.1", "Score by"):
+    for text in ("Leaders, from left to right", "Time by stage", "raw_from = 0.08"):
         assert text in page
+    assert f"{len(found.graph.xyz)} nodes on the axes of branches" in page
+    assert "Score" not in page.rpartition("</style>")[2].partition("<h1>")[2]
+
+
+def test_a_method_that_goes_by_a_score_has_it_on_its_page() -> None:
+    truth, cloud = simulated(2)
+    found = skeletonize(cloud, truth.xyz[0], Parameters.paper().changed("search", K=20))
+    page = report_page(found, "tree")
+    assert "Score by iteration" in page and "r_super = 0.1" in page
     assert f"Score {found.score:.2f}" in page
     assert f"({found.graph.superpoints.unused_points:,} in no superpoint)" in page
 

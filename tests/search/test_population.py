@@ -19,8 +19,8 @@ from prunus.search.potential import path_priors
 from prunus.search.score import graph_table
 from tests.search.graphs import as_pairs, orchard, random_graph
 
-PARAMS = Parameters()
-PLAIN = Parameters().changed("search", refine=False)
+PARAMS = Parameters.learned()
+PLAIN = Parameters.learned().changed("search", refine=False)
 
 
 class Steps:

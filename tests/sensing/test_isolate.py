@@ -89,7 +89,7 @@ def test_skeletonize_isolates_raw_scans_alone(row: Scan) -> None:
 
 def test_without_a_base_the_skeleton_stands_at_the_foot(row: Scan) -> None:
     found = skeletonize(row.xyz)
-    assert np.linalg.norm(found.skeleton.xyz[0] - row.truth.xyz[0]) < 0.03
+    assert np.linalg.norm(found.skeleton.xyz[0] - row.truth.xyz[0]) < 0.05
     assert any("foot of the trunk was found" in note for note in found.notes)
 
 

@@ -26,7 +26,7 @@ def graph(shift: tuple[float, ...] = (0.0, 0.0, 0.0), turn: float = 1.0) -> Cand
     xyz = points.to_input.apply(points.xyz) * [turn, turn, 1.0] + np.array(shift)
     rng = np.random.default_rng(0)
     cloud = PointCloud.from_xyz(xyz).sample(15_000, rng)
-    return find_candidates(find_superpoints(cloud, Parameters().superpoints, rng))
+    return find_candidates(find_superpoints(cloud, Parameters.learned().superpoints, rng))
 
 
 def swapped(candidates: CandidateGraph) -> CandidateGraph:

@@ -48,7 +48,7 @@ def drawn_graph(picture: str) -> tuple[SeededGraph, Skeleton]:
 def found(picture: str) -> int:
     """How many side-branch edges are found in a drawing."""
     graph, skeleton = drawn_graph(picture)
-    grown = find_side_branches(skeleton, graph, Parameters())
+    grown = find_side_branches(skeleton, graph, Parameters.learned())
     assert offenders(grown) == {}
     return int(grown.edges_with(Label.SIDE_BRANCH).sum())
 
@@ -67,7 +67,7 @@ def test_one_that_leaves_the_support_is_none() -> None:
 
 def test_a_piece_that_also_touches_the_support_is_none_as_in_the_paper() -> None:
     graph, skeleton = drawn_graph("l   \nlxxx\nl  x\nssss\nt   \no   ")
-    paper = Parameters().changed("side_branches", several=False)
+    paper = Parameters.learned().changed("side_branches", several=False)
     added = find_side_branches(skeleton, graph, paper).edges_with(Label.SIDE_BRANCH).sum()
     assert added == 0
 
@@ -90,7 +90,7 @@ def test_nothing_loose_gives_nothing() -> None:
 
 def test_the_turn_limit_ends_a_branch() -> None:
     graph, skeleton = drawn_graph("l   \nl bb\nlbb \nl   \ns   \nt   \no   ")
-    strict = Parameters().changed("side_branches", turn_max=0.5)
+    strict = Parameters.learned().changed("side_branches", turn_max=0.5)
     straight = find_side_branches(skeleton, graph, strict)
     assert straight.edges_with(Label.SIDE_BRANCH).sum() == 2
     assert found("l   \nl bb\nlbb \nl   \ns   \nt   \no   ") == 4

@@ -19,7 +19,7 @@ from prunus.stages.images import edge_images
 from prunus.stages.seeds import find_seeds
 from prunus.stages.superpoints import find_superpoints
 
-PARAMS = Parameters()
+PARAMS = Parameters.learned()
 
 
 def rod(start: list[float], end: list[float], rng: np.random.Generator, count: int = 600) -> Floats:

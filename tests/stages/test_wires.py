@@ -48,9 +48,9 @@ def test_few_superpoints_lie_on_a_thick_wire_away_from_wood(
     trunk = line([0, 0, 0], [0, 0, 2], rng, 3000) + rng.normal(0, 0.012, (3000, 3))
     wire = line([-1.5, 0, 1], [1.5, 0, 1], rng, 3000) + rng.normal(0, 0.012, (3000, 3))
     cloud = PointCloud.from_xyz(np.concatenate([trunk, wire]))
-    under = find_superpoints(cloud, Parameters().superpoints, rng)
+    under = find_superpoints(cloud, Parameters.learned().superpoints, rng)
     monkeypatch.setattr(superpoints, "on_wires", lambda xyz, *_: np.zeros(len(xyz), np.bool_))
-    blind = find_superpoints(cloud, Parameters().superpoints, rng)
+    blind = find_superpoints(cloud, Parameters.learned().superpoints, rng)
     left, all_of_it = (np.abs(one.xyz[:, 0]) > 0.12 for one in (under, blind))
     assert left.sum() < all_of_it.sum() / 3
     assert (~left).sum() > 10

@@ -9,10 +9,10 @@ import pytest
 
 from prunus.corrections import AddPath, Relabel, RemoveBranch, Settings, State, Work, branch_names
 from prunus.errors import PrunusError
+from prunus.geometry.near import away_from
 from prunus.io.clouds import write_cloud
 from prunus.io.plans import read_plan, write_plan
 from prunus.io.skeletons import read_skeleton, sha256_of
-from prunus.kernels.away import away_from
 from prunus.model import Label
 from prunus.pipeline import skeletonize
 from prunus.simulate import simulate_scan

@@ -1,21 +1,21 @@
-"""An act on a skeleton, with the rules asked: after it the tree is legal, or it is refused."""
+"""An act on a skeleton, with the rules asked: it breaks none, or it is refused."""
 
 from __future__ import annotations
 
 from prunus.corrections.acts import Step, Together
 from prunus.corrections.draft import Draft
+from prunus.corrections.legal import newly_broken
 from prunus.corrections.refused import Refused
 from prunus.corrections.repairs import repairs
 from prunus.corrections.steps import Stepped, stepped
 from prunus.corrections.words import RULES, branch_names, listed
-from prunus.model import Ints, SeededGraph
-from prunus.rules import offenders
+from prunus.model import SeededGraph
 
 __all__ = ["Refused", "corrected"]
 
 
 def corrected(draft: Draft, act: Step | Together, graph: SeededGraph) -> Stepped:
-    """The draft after an act, a legal tree.
+    """The draft after an act: a tree in which no rule is broken that held before.
 
     Raises Refused, with what could be done instead, where it would not be one, and PrunusError
     where the act names what is not there.
@@ -25,17 +25,21 @@ def corrected(draft: Draft, act: Step | Together, graph: SeededGraph) -> Stepped
     except Refused as refused:
         refused.repairs = repairs(draft, act, None, graph)
         raise
-    broken = offenders(done.draft.skeleton())
+    broken = newly_broken(draft, done.draft)
     if broken:
         raise _refusal(draft, act, done, broken, graph)
     return done
 
 
 def _refusal(
-    draft: Draft, act: Step | Together, wrong: Stepped, broken: dict[str, Ints], graph: SeededGraph
+    draft: Draft,
+    act: Step | Together,
+    wrong: Stepped,
+    broken: dict[str, list[int]],
+    graph: SeededGraph,
 ) -> Refused:
     rule = next(iter(broken))
-    nodes = [wrong.draft.nodes[row] for row in broken[rule].tolist()]
+    nodes = broken[rule]
     names = branch_names(draft)
     where = listed([names.get(node, "the new path") for node in nodes])
     text = f"{rule}: {RULES[rule]}; it would be broken at {where}"

@@ -36,11 +36,11 @@ class Draft:
 
     @classmethod
     def of(cls, result: Result) -> Draft:
-        """The skeleton that the machine found. Its base may stand lower than its superpoint."""
+        """The skeleton that the machine found. Its ends may stand farther out than their nodes."""
         graph, skeleton = result.graph, result.in_house
         nodes = skeleton.superpoint.tolist()
         places = graph.xyz.copy()
-        places[nodes[0]] = skeleton.xyz[0]
+        places[nodes] = skeleton.xyz
         rows = zip(nodes[1:], skeleton.parent[1:].tolist(), skeleton.label[1:], strict=True)
         into = {node: (nodes[above], Label(label)) for node, above, label in rows}
         return cls(places, len(graph.xyz), nodes[0], into, confidences(graph))

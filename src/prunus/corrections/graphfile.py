@@ -14,8 +14,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from prunus import __version__
 from prunus.errors import PrunusError
+from prunus.geometry.near import within
 from prunus.io.arrays import Arrays, finite, indices, read_arrays, shares, there, write_arrays
-from prunus.kernels.neighbours import within
 from prunus.model import (
     CandidateGraph,
     Floats,
@@ -31,7 +31,7 @@ from prunus.model import (
 from prunus.params import Parameters
 from prunus.reading import json_of, record_of
 from prunus.result import Result
-from prunus.sensing.isolate import Isolated
+from prunus.sensing.isolated import Isolated
 
 Row = tuple[float, float, float]
 COLUMNS = tuple(column.name for column in fields(Skeleton))
@@ -53,7 +53,7 @@ class GraphRecord(BaseModel):
     radius: Annotated[float, Field(gt=0)]
     scorer: str
     base: Annotated[int, Field(ge=0)]
-    score: float
+    score: float | None
     warnings: list[str]
     notes: list[str]
     isolated_at: Row | None
@@ -116,6 +116,7 @@ def write_graph(path: Path, result: Result) -> None:
         "tips": graph.tips,
         "history": result.history,
         "kind": np.zeros(0, np.int64) if isolated is None else isolated.kind,
+        **_members(result),
         **{f"skeleton_{name}": getattr(result.in_house, name) for name in COLUMNS},
     }
     told = {
@@ -159,7 +160,7 @@ def _graph(arrays: Arrays, told: GraphRecord, cloud: PointCloud) -> SeededGraph:
     xyz = finite(arrays, "xyz")
     if len(drawn) == 0 or xyz.ndim != 2 or xyz.shape[1] != 3:
         raise ValueError("xyz: expected superpoints (N, 3), and points about them")
-    start, members = within(drawn.xyz, xyz, told.radius)
+    start, members = _members_in(arrays, drawn, xyz, told.radius)
     own = Superpoints(drawn, xyz, start, members, told.radius, finite(arrays, "wood"))
     category = shares(arrays, "category")
     if category.ndim != 2 or category.shape[1] not in (0, len(Label) + 1):
@@ -169,6 +170,25 @@ def _graph(arrays: Arrays, told: GraphRecord, cloud: PointCloud) -> SeededGraph:
     if told.base >= len(own):
         raise ValueError(f"told.base: found {told.base}; there are {len(own)} superpoints")
     return SeededGraph(scored, told.base, indices(arrays, "tips", len(own)))
+
+
+def _members(result: Result) -> dict[str, Ints]:
+    """Which points belong to each node, where they are others than those within the radius."""
+    own = result.graph.superpoints
+    if result.params.method != "default":
+        return {}
+    return {"held": np.diff(own.start), "members": own.members}
+
+
+def _members_in(arrays: Arrays, drawn: PointCloud, xyz: Floats, radius: float) -> tuple[Ints, Ints]:
+    """The starts (N + 1,) and points of the nodes (N, 3)."""
+    if "members" not in arrays:
+        return within(drawn.xyz, xyz, radius)
+    members = indices(arrays, "members", len(drawn))
+    held = indices(arrays, "held", len(members) + 1)
+    if held.shape != (len(xyz),) or members.shape != (held.sum(),):
+        raise ValueError("held: expected how many points each node has, of all members")
+    return np.concatenate([[0], held.cumsum()]), members
 
 
 def _edges(arrays: Arrays, count: int) -> Ints:

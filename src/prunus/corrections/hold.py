@@ -13,8 +13,9 @@ import numpy as np
 
 from prunus.corrections.draft import Draft, Pair, pair_of
 from prunus.corrections.refused import Refused
+from prunus.corrections.relabel import relabelled
 from prunus.corrections.settle import Allowed, settled
-from prunus.kernels.neighbours import within
+from prunus.geometry.near import within
 from prunus.model import (
     CandidateGraph,
     Floats,
@@ -26,7 +27,6 @@ from prunus.model import (
     Superpoints,
 )
 from prunus.params import Parameters
-from prunus.pipeline import best_skeleton
 
 
 @dataclass(frozen=True)
@@ -55,22 +55,34 @@ def _edges(draft: Draft) -> dict[Pair, Label]:
 
 
 def searched(draft: Draft, held: Held, graph: SeededGraph, params: Parameters, seed: int) -> Draft:
-    """The best skeleton that holds what was corrected.
+    """The best skeleton that holds what was corrected; under the default method the best labels.
 
     Raises Refused, naming the edges, where none could be made that does.
     """
+    nodes = [n for n in draft.nodes[1:] if pair_of(draft.into[n][0], n) in held.label]
+    if params.method == "default":
+        best = relabelled(draft, held.label, graph) if held != NOTHING else draft
+        if lost := _lost(best, draft, nodes):
+            raise _refusal(draft, lost)
+        return best
     seeded = held_graph(draft, held, graph)
+    # Here, since it takes a compiler.
+    from prunus.searched import best_skeleton
+
     found = best_skeleton(seeded, params, np.random.default_rng(seed), {}).skeleton
     best = _draft_of(found, draft)
-    nodes = [n for n in draft.nodes[1:] if pair_of(draft.into[n][0], n) in held.label]
     for back in (_lost(best, draft, nodes), nodes):
         whole = _put_back(best, draft, back)
         right = settled(whole, Allowed(nodes, relabel=True, remove=True))
         if right is not None and not _lost(right, draft, nodes):
             return right
-    lost = _lost(best, draft, nodes)
+    raise _refusal(draft, _lost(best, draft, nodes))
+
+
+def _refusal(draft: Draft, lost: list[int]) -> Refused:
     edges = ", ".join(f"{draft.into[node][0]} to {node}" for node in lost)
-    raise Refused(f"no tree holds the corrected edges {edges}", "keeps_corrections", lost).at(draft)
+    text = f"no tree holds the corrected edges {edges}"
+    return Refused(text, "keeps_corrections", lost).at(draft)
 
 
 def _draft_of(skeleton: Skeleton, draft: Draft) -> Draft:

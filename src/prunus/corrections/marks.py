@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from prunus.corrections.where import Box, Brush, Class, Component, Lasso, Shape
-from prunus.kernels.forest import components
-from prunus.kernels.neighbours import nearest
+from prunus.geometry.near import nearest
+from prunus.geometry.pieces import components
 from prunus.model import Bools, Floats, Ints, PointCloud
 from prunus.model.arrays import cubes
 

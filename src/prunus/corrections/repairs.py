@@ -17,6 +17,7 @@ from prunus.corrections.acts import (
     Together,
 )
 from prunus.corrections.draft import Draft
+from prunus.corrections.legal import newly_broken
 from prunus.corrections.refused import Repairs
 from prunus.corrections.settle import Allowed, settled
 from prunus.corrections.steps import Stepped, stepped
@@ -24,7 +25,6 @@ from prunus.corrections.words import a_branch, branch_names, listed
 from prunus.errors import PrunusError
 from prunus.measure.names import NOUNS
 from prunus.model import Label, SeededGraph
-from prunus.rules import offenders
 
 MOST = 5
 """So many repairs are offered."""
@@ -37,7 +37,7 @@ Offer = tuple[str, Step | Together]
 def tried(draft: Draft, act: Step | Together, graph: SeededGraph) -> Draft | None:
     """The draft after an act; None where it cannot be done."""
     done = _done(draft, act, graph)
-    return None if done is None or offenders(done.skeleton()) else done
+    return None if done is None or newly_broken(draft, done) else done
 
 
 def _done(draft: Draft, act: Step | Together, graph: SeededGraph) -> Draft | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from prunus.kernels.forest import cheapest
+from prunus.geometry.pieces import cheapest
 from prunus.model import Floats, Ints, SeededGraph
 
 SURE = 1.02

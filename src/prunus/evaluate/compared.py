@@ -8,7 +8,7 @@ import numpy as np
 
 from prunus.evaluate.arms import arms, parents
 from prunus.evaluate.curves import TOLERANCE, sampled_rows
-from prunus.kernels.neighbours import within
+from prunus.geometry.near import within
 from prunus.measure import Branch, branch_of_rows
 from prunus.model import Bools, Floats, Ints, Skeleton
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from prunus.evaluate.compared import compared
 from prunus.evaluate.curves import SPACING
-from prunus.kernels.neighbours import within
+from prunus.geometry.near import within
 from prunus.measure import COUNTS
 from prunus.model import Bools, Floats, Label, Skeleton, parents_first
 from prunus.model.arrays import GRID

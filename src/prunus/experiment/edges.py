@@ -15,7 +15,7 @@ from prunus.stages.candidates import find_candidates
 from prunus.stages.networks import NetworkScorer
 from prunus.stages.superpoints import find_superpoints
 
-NETWORKS = {"paper": Parameters.paper(), "ours": Parameters()}
+NETWORKS = {"paper": Parameters.paper(), "ours": Parameters.learned()}
 """Each network on the candidate edges of the way that it serves."""
 
 

@@ -14,7 +14,6 @@ COLOURS = {
     "corrected by hand": "#d55e00",
     "paper": "#999999",
     "default": "#0072b2",
-    "oracle": "#009e73",
     "paper, oracle": "#cc79a7",
 }
 """Of each way in the figures: Okabe and Ito's palette."""

@@ -26,7 +26,7 @@ IN_PAPER: dict[str, str] = {
     "of it before the search": "5 %",
 }
 """What the paper has, on 29 real trees corrected by people."""
-SHOWN = (BY_HAND, "paper", "default", "oracle", "paper, oracle")
+SHOWN = (BY_HAND, "paper", "default", "paper, oracle")
 """Ways in the figures."""
 STYLE = """
 body{font:15px/1.45 system-ui,sans-serif;color:#222;margin:0 auto;max-width:1250px}

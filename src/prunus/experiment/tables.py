@@ -13,7 +13,7 @@ from prunus.experiment.habits import HABITS
 from prunus.experiment.trial import Record
 from prunus.model import Label
 
-BEFORE = ("sample", "superpoints", "candidates", "confidence", "seeds")
+BEFORE = ("sample", "superpoints", "candidates", "confidence", "seeds", "field", "votes")
 """Stages before the search."""
 
 
@@ -94,8 +94,8 @@ def spread(values: Iterable[float]) -> Record:
 
 
 def before(trial: Record) -> float:
-    """CPU seconds before the search."""
-    return float(sum(trial["cpu_s"][stage] for stage in BEFORE))
+    """CPU seconds before the search, or before the tree grows."""
+    return float(sum(trial["cpu_s"].get(stage, 0.0) for stage in BEFORE))
 
 
 def all_stages(trial: Record) -> float:

@@ -44,7 +44,6 @@ WAYS = (
     Way("paper", "the method as the paper has it, with its network", Parameters.paper()),
     Way("default", "ours", Parameters()),
     Way("default, base found", "ours, the base not given", Parameters(), base=False),
-    Way("oracle", "ours, every candidate edge told truly", Parameters(), oracle=True),
     Way(
         "paper, oracle", "the paper's, every candidate edge told truly",
         Parameters.paper(), oracle=True,
@@ -52,17 +51,8 @@ WAYS = (
 )  # fmt: skip
 
 
-_PAPER, _OURS = Parameters.paper(), Parameters()
+_PAPER = Parameters.paper()
 ABLATIONS = (
-    Way(
-        "random superpoints", "ours, but superpoints at random",
-        _OURS.changed("superpoints", place="random"),
-    ),
-    Way(
-        "paper's score", "ours, but the paper's score and search",
-        _OURS.changed("search", score="paper"),
-    ),
-    Way("paper's network", "ours, but its network", _OURS.changed("confidence", edge_net="paper")),
     Way(
         "paper + our network", "the paper's, but our network",
         _PAPER.changed("confidence", edge_net="ours"),
@@ -84,7 +74,7 @@ ABLATIONS = (
         _PAPER.changed("superpoints", place="axes"),
     ),
 )  # fmt: skip
-"""What each part brings: ours with one thing undone, the paper's with one thing done."""
+"""What each part beyond the paper brings its method."""
 
 
 def ways(ablation: bool) -> tuple[Way, ...]:
@@ -121,8 +111,7 @@ def judged(result: Result, tree: Tree) -> Record:
     right = corrected(found, nodes, tree.truth, tree.counts)
     return {
         **edited(edits(found, right)),
-        "score": score_of(found, result),
-        "score_of_corrected": score_of(right, result),
+        **_scores(found, right, result),
         **as_found(found, tree),
     }
 
@@ -152,13 +141,20 @@ def by_length(needed: LengthEdits) -> Record:
     return without_nan({"ratio": needed.ratio, "geometry_ratio": needed.geometry_ratio, **metres})
 
 
+def _scores(found: Skeleton, right: Skeleton, result: Result) -> Record:
+    """What a skeleton and the corrected one score, where the method goes by a score."""
+    if result.score is None:
+        return {}
+    return {"score": score_of(found, result), "score_of_corrected": score_of(right, result)}
+
+
 def score_of(skeleton: Skeleton, result: Result) -> float:
     """What a skeleton on the superpoints of a result scores under the score that made the result.
 
     Edges that are no candidates have no confidence.
     """
     graph = result.graph
-    if result.params.search.score == "learned":
+    if result.params.method == "learned":
         return learned_score_of(skeleton, graph, shipped_score())
     known = dict(zip(map(tuple, graph.edges.tolist()), graph.confidence.tolist(), strict=True))
     ends = np.sort(skeleton.superpoint[skeleton.edges], axis=1).tolist()

@@ -16,6 +16,7 @@ from prunus.model import (
     Role,
     ScoredGraph,
     SeededGraph,
+    Skeleton,
     Superpoints,
 )
 
@@ -24,17 +25,19 @@ REACH_M = 0.03
 
 
 def seeded_graph(
-    cloud: PointCloud, of_voxel: Ints, voxels: Floats, orchard: Orchard
+    cloud: PointCloud, of_voxel: Ints, voxels: Floats, orchard: Orchard, tree: Skeleton
 ) -> SeededGraph:
-    """The graph of the trees in view; its base is the foot of the tree that is meant.
+    """The graph of the trees in view, and the tree that is meant: its edges, its base.
 
     cloud: the points of that tree; of_voxel (P,): the voxel that holds each; voxels (V, 3): where
-    these are.
+    these are. Edges of the tree are as sure as they are in it.
     """
     graph = orchard.graph
     threads = graph.threads
-    edges = np.unique(graph.edges, axis=0)
+    own = np.sort(tree.superpoint[tree.edges], axis=1)
+    edges, row = np.unique(np.concatenate([graph.edges, own]), axis=0, return_inverse=True)
     confidence = np.maximum(confidence_of(threads, edges), confidence_of(threads, edges[:, ::-1]))
+    confidence[row[len(graph.edges) :]] = tree.confidence[1:]
     role = np.sqrt(threads.role[edges[:, 0]] * threads.role[edges[:, 1]])
     return SeededGraph(
         ScoredGraph(

@@ -37,7 +37,7 @@ class TreeRecord(_Record):
         default=None, description="path of the skeleton.json that was written"
     )
     score: float | None = Field(
-        default=None, description="under params.search.score: learned, or SkelScore"
+        default=None, description="SkelScore of the paper's method; null where the method has none"
     )
     points: int | None = Field(default=None, description="of the input")
     superpoints: int | None = Field(default=None, description="nodes of the candidate graph")

@@ -80,7 +80,7 @@ class SkeletonFile(_Record):
     radius: list[Annotated[float, Field(ge=0)] | None] = Field(description="null = unknown")
     superpoint: list[RowOrNone] = Field(description="index of the superpoint; -1 = none")
     score: float | None = Field(
-        None, description="under params.search.score: learned, or SkelScore"
+        None, description="SkelScore of the paper's method; null where the method has none"
     )
     trust: TrustRecord | None = None
     review: list[str] | None = Field(

@@ -116,20 +116,3 @@ def cover(xyz: Floats, order: Ints, radius: float) -> tuple[Floats, Ints]:
         size[N] = count
         N += 1
     return mean[:N].copy(), size[:N].copy()
-
-
-@kernel
-def nearest(xyz: Floats, nodes: Floats, reach: float) -> Ints:
-    """The node nearest to each point (P,); -1 where none of them (N, 3) is within `reach`."""
-    grid = build_grid(nodes, reach)
-    found = np.empty(len(nodes), np.int64)
-    best = np.full(len(xyz), -1, np.int64)
-    for p in range(len(xyz)):
-        least = np.inf
-        for slot in range(ball(nodes, grid, xyz[p], reach, found)):
-            away = 0.0
-            for axis in range(3):
-                away += (nodes[found[slot], axis] - xyz[p, axis]) ** 2
-            if away < least or (away == least and found[slot] < best[p]):
-                best[p], least = found[slot], away
-    return best

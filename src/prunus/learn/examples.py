@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from prunus.errors import PrunusError
+from prunus.geometry.near import within
 from prunus.io.scans import ScannedTree, read_scan
-from prunus.kernels.neighbours import within
 from prunus.learn.labels import UNTOLD, TrueWood, edge_labels
 from prunus.measure import counting_rows
 from prunus.model import Bools, CandidateGraph, Ints, Kind, PointCloud, Superpoints

@@ -18,8 +18,8 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from prunus.geometry.near import nearest, within
 from prunus.io.scans import ScannedTree, read_scan
-from prunus.kernels.neighbours import nearest, within
 from prunus.learn.examples import VIEWS, drawn
 from prunus.learn.start import go_on_from
 from prunus.learn.train import exported
@@ -95,7 +95,7 @@ def row_example(scan: ScannedTree, kinds: tuple[Kind, ...], rng: np.random.Gener
     """The superpoints of what a scan holds of some kinds."""
     held = np.isin(scan.kind, kinds)
     cloud = PointCloud.from_xyz(scan.xyz[held])
-    pieces = Pieces.of(judged_graph(drawn(cloud, rng), Parameters(), rng))
+    pieces = Pieces.of(judged_graph(drawn(cloud, rng), Parameters.learned(), rng))
     to_house = cloud.to_input.inverse()
     owner = nearest(cloud.xyz, pieces.xyz, NODE_REACH)
     trees = len(scan.trees)

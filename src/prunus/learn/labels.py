@@ -22,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.kernels.neighbours import within
+from prunus.geometry.near import within
 from prunus.measure import branch_of_rows, branches
 from prunus.model import Bools, Floats, Ints, Label, Skeleton
 

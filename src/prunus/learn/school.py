@@ -60,7 +60,7 @@ def school(
     with blaming_the_command():
         recipe.network()
     rng = np.random.default_rng(course.seed)
-    cover = (Parameters.paper() if name == "paper" else Parameters()).superpoints
+    cover = (Parameters.paper() if name == "paper" else Parameters.learned()).superpoints
     lessons = lessons_from(sources, course.scans, course.seed, jobs, cover, watch, rng)
     training, validation, test = lessons.sets
     report: dict[str, Any] = {

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from prunus.kernels.feet import feet, within_parents
-from prunus.kernels.lines import nearest_on_lines
 from prunus.measure.centrelines import STEP, Centrelines, carried, joined, unit
+from prunus.measure.feet import feet, within_parents
+from prunus.measure.lines import nearest_on_lines
 from prunus.measure.radii import WIDE, Tapers, tapers
 from prunus.measure.ribbons import Ribbons, View, camera_place, window
 from prunus.measure.sides import ROUNDER, seen_around

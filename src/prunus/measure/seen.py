@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from prunus.kernels.neighbours import within
+from prunus.geometry.near import within
 from prunus.measure.branches import branches
 from prunus.model import Bools, Floats, Ints, Skeleton
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import solveh_banded
 
-from prunus.kernels.lines import solve_five
 from prunus.measure.centrelines import STEP, Centrelines
 from prunus.model import Floats, Ints
 
@@ -71,7 +71,8 @@ def smoothed(lines: Centrelines, home: Floats, points: Shares, ties: Ties, noise
     diagonal[ties.station] += ties.err**-2
     right[ties.station] += ties.err**-2 * (ties.place - middle)
     beyond = _add_bending(lines, diagonal, beside)
-    return np.asarray(solve_five(diagonal, beside, beyond, right) + middle)
+    bands = np.array([diagonal, beside, beyond])  # as `solveh_banded` has them, lower
+    return np.asarray(solveh_banded(bands, right, lower=True) + middle)
 
 
 FEW = 3.0

@@ -19,8 +19,13 @@ TRUST_NOTE = (
 
 
 def summary_of(result: Result) -> str:
-    """The score and the sizes of the graph."""
+    """The score, where there is one, and the sizes of the graph."""
     graph = result.graph
+    if result.score is None:
+        return (
+            f"<p>{len(graph.superpoints.cloud):,} points, {len(graph.xyz)} nodes on the axes of "
+            f"branches, {len(graph.edges)} edges between them.</p>"
+        )
     return (
         f"<p>Score {result.score:.2f}. {len(graph.superpoints.cloud):,} points "
         f"({graph.superpoints.unused_points:,} in no superpoint), "

@@ -1,4 +1,4 @@
-"""The page: scene, warnings, tables, score by iteration. Needs no network."""
+"""The page: scene, warnings, tables. Needs no network."""
 
 from __future__ import annotations
 
@@ -71,7 +71,6 @@ def report_page(
     if result.isolated is not None:
         traces += left_out_traces(result.scan, result.isolated.kind)
     layout = LAYOUT | {"scene": LAYOUT["scene"] | _frame_of(result)}
-    score = [{"y": [round(value, 4) for value in result.history.tolist()], "mode": "lines"}]
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{escape(title)} - prunus</title>
 <style>{STYLE}</style><script>{library}</script></head><body>
@@ -84,15 +83,24 @@ beside this page are in the axes of the input, in metres.</p>
 {"".join(f'<p class="quiet">{escape(note)}</p>' for note in notes)}
 {"" if plan is None else cuts_section(plan)}</div>
 <div>{labels_of(result)}{leaders_of(result)}
-<h2>Score by iteration</h2><div id="score"></div>{seconds_of(result)}
+{_score_of(result)}{seconds_of(result)}
 <details><summary class="quiet">parameters, seed {result.seed}</summary>
 <pre>{escape(result.params.to_toml())}</pre></details></div></div>
 <script>
 const quiet = {{responsive: true, displaylogo: false}};
 Plotly.newPlot("scene", {json.dumps(traces)}, {json.dumps(layout)}, quiet);
-Plotly.newPlot("score", {json.dumps(score)}, {json.dumps(SCORE_LAYOUT)}, quiet);
 </script></body></html>
 """
+
+
+def _score_of(result: Result) -> str:
+    """The best score by iteration; nothing where the method goes by none."""
+    if result.score is None:
+        return ""
+    score = [{"y": [round(value, 4) for value in result.history.tolist()], "mode": "lines"}]
+    return f"""<h2>Score by iteration</h2><div id="score"></div>
+<script>Plotly.newPlot("score", {json.dumps(score)}, {json.dumps(SCORE_LAYOUT)},
+{{responsive: true, displaylogo: false}});</script>"""
 
 
 def _frame_of(result: Result) -> dict[str, Any]:

@@ -169,7 +169,7 @@ def search_learned(seeded: SeededGraph, score: LearnedScore) -> SearchResult:
 
 def goes_by_learned_score(seeded: SeededGraph, params: Parameters) -> bool:
     """Whether the learned score is asked for, and the scorer tells the categories it takes."""
-    return params.search.score == "learned" and seeded.scored.category.size > 0
+    return params.method == "learned" and seeded.scored.category.size > 0
 
 
 def learned_score_of(skeleton: Skeleton, seeded: SeededGraph, score: LearnedScore) -> float:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from prunus.errors import NoTreeError
-from prunus.kernels.neighbours import within
+from prunus.geometry.near import within
 from prunus.model import FRAMES, Floats, PointCloud
 from prunus.model.steps import step_of
 from prunus.sensing.orient import local_wood

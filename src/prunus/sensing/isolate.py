@@ -12,11 +12,12 @@ from functools import cached_property
 import numpy as np
 
 from prunus.errors import NoTreeError, PrunusError
-from prunus.kernels.forest import components
-from prunus.kernels.neighbours import nearest
+from prunus.geometry.near import nearest
+from prunus.geometry.pieces import components
 from prunus.model import Bools, Floats, Ints, Kind, PointCloud, ScoredGraph
 from prunus.networks import WEIGHTS, open_network
 from prunus.params import Parameters
+from prunus.sensing.isolated import Isolated
 from prunus.sensing.surroundings import Pieces
 from prunus.sensing.trunks import Trunk, find_trunks, foot_of
 from prunus.stages.candidates import find_candidates
@@ -44,58 +45,8 @@ CLOSE = 0.5
 """A tree so little farther aside, metres, could be meant as well."""
 SNAPS = 0.25
 """A point given by hand means the trunk within so many metres."""
-JOINS, TORN = 0.95, 0.35
-"""Edges of this confidence join wood; so many superpoints torn off, for each of the tree, are many.
-Set by `python -m bench.plausible`: of 29 simulated scans of which over 0.6 of the tree was kept
-one had 0.53, no other more than 0.24; of 11 of which less was kept three had 0.44 to 1.6, the
-others 0.1 at most: of those this does not tell."""
-
-
-@dataclass(frozen=True, eq=False)
-class Isolated:
-    """What each point (P,) of a scan is to one tree (`model.Kind`), and where that stands.
-
-    `base` (3,), house frame, is where the network looked from; `foot` (3,) the lowest point of the
-    trunk that the scan holds; `rival` (3,) the foot of another tree that could be meant as well;
-    `torn`: how many superpoints were left out that hang on the tree by sure edges, for each of it.
-    """
-
-    kind: Ints
-    base: Floats
-    foot: Floats
-    rival: Floats | None = None
-    torn: float = 0.0
-
-    @property
-    def target(self) -> Bools:
-        """The points (P,) of the tree."""
-        return np.asarray(self.kind == Kind.TARGET)
-
-    @property
-    def removed(self) -> float:
-        """The share of the points, strays apart, that are not the tree."""
-        counted = self.kind != Kind.STRAY
-        return float(1 - self.target.sum() / max(counted.sum(), 1))
-
-    def doubts(self) -> list[str]:
-        """Why it may not be the tree, or not all of it."""
-        if self.torn < TORN:
-            return []
-        return [
-            f"{self.removed:.0%} of the scan was left out, though much of that hangs on the tree: "
-            "is it all one tree (see --no-isolate)?"
-        ]
-
-    def told(self) -> str:
-        """What was taken out, in a line."""
-        counts = np.bincount(self.kind, minlength=len(Kind))
-        others = sorted((kind for kind in Kind if counts[kind]), key=lambda kind: -counts[kind])
-        parts = [f"{kind.name.lower()} {counts[kind] / len(self.kind):.1%}" for kind in others
-                 if kind != Kind.TARGET]  # fmt: skip
-        return (
-            f"a raw scan: {counts[Kind.TARGET]} of {len(self.kind)} points are the tree; "
-            f"left out: {', '.join(parts)}"
-        )
+JOINS = 0.95
+"""Edges of this confidence join wood."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from prunus.kernels.neighbours import within
+from prunus.geometry.near import within
 from prunus.model import Bools, Floats, Ints
 from prunus.model.arrays import cubes
 

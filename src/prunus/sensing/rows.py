@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from prunus.kernels.forest import components
-from prunus.kernels.neighbours import within
+from prunus.geometry.near import within
+from prunus.geometry.pieces import components
 from prunus.model import Floats, Ints
 from prunus.sensing.patches import Cells, Patches
 

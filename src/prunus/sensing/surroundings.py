@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from prunus.kernels.forest import cheapest
+from prunus.geometry.pieces import cheapest
 from prunus.model import Floats, Ints, ScoredGraph
 from prunus.stages.context import Inputs, moments
 

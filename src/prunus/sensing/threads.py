@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from prunus.geometry.near import within
 from prunus.kernels.axes import contract
-from prunus.kernels.neighbours import cover, within
+from prunus.kernels.neighbours import cover
 from prunus.model import Floats, Ints
 from prunus.sensing.views import Seen
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.kernels.forest import components
+from prunus.geometry.pieces import components
 from prunus.model import Floats, Ints, Label, PointCloud, ScoredGraph
 
 SURE = 0.30

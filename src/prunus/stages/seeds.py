@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from prunus.errors import NoTreeError, PrunusError
+from prunus.geometry.pieces import components
 from prunus.kernels.angles import grow_angle
-from prunus.kernels.forest import components, spanning_forest
+from prunus.kernels.forest import spanning_forest
 from prunus.model import FRAMES, Bools, Floats, Ints, Label, ScoredGraph, SeededGraph
 from prunus.params import Parameters
 

@@ -7,9 +7,9 @@ from heapq import heappop, heappush
 
 import numpy as np
 
+from prunus.geometry.pieces import components
 from prunus.grammar import SIDE_BRANCH_PARENTS
 from prunus.kernels.angles import turn_angle
-from prunus.kernels.forest import components
 from prunus.model import Floats, Ints, Label, SeededGraph, Skeleton
 from prunus.params import Parameters
 

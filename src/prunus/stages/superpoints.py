@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from prunus.errors import NoTreeError, PrunusError
+from prunus.geometry.near import nearest, within
 from prunus.kernels.axes import contract, cover_along
-from prunus.kernels.neighbours import cover, nearest, within
+from prunus.kernels.neighbours import cover
 from prunus.model import Floats, Ints, PointCloud, Superpoints
 from prunus.params import Cover
 from prunus.stages.wires import on_wires

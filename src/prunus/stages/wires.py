@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.kernels.neighbours import nearest
+from prunus.geometry.near import nearest
 from prunus.model import Bools, Floats, Ints
 
 LEVEL = np.cos(np.radians(20))

@@ -26,7 +26,7 @@ from tests.drawn import tree
 @pytest.fixture(scope="module")
 def found() -> Result:
     truth, cloud = simulated(2)
-    return skeletonize(cloud, truth.xyz[0])
+    return skeletonize(cloud, truth.xyz[0], Parameters.learned())
 
 
 def known(result: Result) -> Known:
@@ -68,7 +68,7 @@ def test_what_is_wrong_is_trusted_less() -> None:
     right, wrong = list[float](), list[float]()
     for seed in (2, 4, 5):
         truth, cloud = simulated(seed)
-        result = skeletonize(cloud, truth.xyz[0])
+        result = skeletonize(cloud, truth.xyz[0], Parameters.learned())
         assert result.trust is not None
         fine = right_branches(result.skeleton, truth)
         right += result.trust.branch[fine].tolist()
@@ -107,7 +107,7 @@ def test_the_judged_gain_is_that_of_the_score(found: Result) -> None:
 
 def test_the_papers_way_has_no_trust(found: Result) -> None:
     truth, cloud = simulated(2, 4_000)
-    paper = Parameters().changed("search", score="paper", K=20)
+    paper = Parameters.paper().changed("search", K=20)
     result = skeletonize(cloud, truth.xyz[0], paper)
     assert result.trust is None
     assert result.review == result.warnings

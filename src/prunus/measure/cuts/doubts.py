@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from prunus.kernels.neighbours import nearest
+from prunus.geometry.near import nearest
 from prunus.measure.cuts.evidence import Evidence
 from prunus.measure.cuts.limbs import Limbs
 from prunus.measure.cuts.reach import SMEAR, Approach, samples

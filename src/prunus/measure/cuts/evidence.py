@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.kernels.away import away_from
+from prunus.geometry.near import away_from
 from prunus.measure.cuts.limbs import LIKELY_RADIUS, Limb, Limbs
 from prunus.measure.cuts.nearby import Nearby, told_by_points
 from prunus.measure.cuts.rules import Demand

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.kernels.away import away_from
+from prunus.geometry.near import away_from
 from prunus.measure.branches import Branch, branch_of_rows, branches
 from prunus.measure.names import branch_names
 from prunus.model import Bools, Floats, Ints, Label, Skeleton

@@ -7,8 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from prunus.kernels.away import away_from
-from prunus.kernels.neighbours import within
+from prunus.geometry.near import away_from, within
 from prunus.measure.cuts.limbs import Limb, Limbs, stretch_near
 from prunus.model import Floats
 from prunus.model.arrays import cubes

@@ -11,8 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from prunus.kernels.cones import greatest_cosines
-from prunus.kernels.neighbours import nearest
+from prunus.geometry.near import nearest
 from prunus.measure.cuts.nearby import AROUND
 from prunus.model import Floats, Ints
 from prunus.model.arrays import cubes
@@ -114,7 +113,7 @@ def _free_angles(ways: Floats, off: Floats, away: Floats) -> Floats:
 def _most(ways: Floats, off: Floats, away: Floats, low: float, high: float) -> Floats:
     """The greatest cosine (D,) of each way with points between two distances; -1 without any."""
     rows = np.flatnonzero((away >= low) & (away < high))
-    return greatest_cosines(ways, off[rows], away[rows])
+    return np.asarray((ways @ (off[rows] / away[rows, None]).T).max(axis=1, initial=-1.0))
 
 
 def _first(way: Floats, off: Floats, away: Floats) -> float:

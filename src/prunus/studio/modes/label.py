@@ -162,6 +162,11 @@ def queue_of(work: Work) -> Queue:
 
     Raises PrunusError where training could not make the graph again.
     """
+    if work.settings.params.method == "default":
+        raise PrunusError(
+            "candidate edges are of the paper's method alone: to label them open the scan with "
+            "--params paper and another --output"
+        )
     state = work.state
     rebuilt = any(isinstance(act, Rebuild) for act in work.acts[: work.position])
     if rebuilt and not state.marked:

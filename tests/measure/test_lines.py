@@ -1,4 +1,4 @@
-"""Places on lines against the slow twin, and the solver against a dense one."""
+"""Places on lines against the slow twin."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from prunus.kernels import reference
-from prunus.kernels.lines import nearest_on_lines, solve_five
+from prunus.measure.lines import nearest_on_lines
 
 LINE = np.array([[0.0, 0, 0], [0.1, 0, 0], [0.2, 0, 0]])
 
@@ -40,17 +40,3 @@ def test_no_place_is_between_two_lines() -> None:
         np.array([[0.14, 0.0, 0.0]]), LINE, np.array([0, 0, 1]), 0.1
     )
     assert (before[0], share[0]) == (0, 1.0)
-
-
-@settings(deadline=None, max_examples=30)
-@given(seed=st.integers(0, 1000), size=st.integers(1, 12))
-def test_five_diagonals_are_solved_like_a_dense_matrix(seed: int, size: int) -> None:
-    rng = np.random.default_rng(seed)
-    half = np.triu(np.tril(rng.normal(size=(size + 2, size)), 0), -2)
-    dense = half.T @ half + np.eye(size)
-    right = rng.normal(size=(size, 3))
-    beside = np.append(np.diag(dense, 1), 0.0)
-    beyond = np.append(np.diag(dense, 2), [0.0, 0.0])[:size]
-    assert np.triu(dense, 3) == pytest.approx(0)
-    found = solve_five(np.diag(dense).copy(), beside, beyond, right)
-    assert found == pytest.approx(np.linalg.solve(dense, right))

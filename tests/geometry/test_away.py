@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from prunus.geometry.near import away_from
 from prunus.kernels import reference
-from prunus.kernels.away import away_from
 
 
 @settings(deadline=None, max_examples=30)

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from prunus.kernels import reference
-from prunus.kernels.feet import Flags, feet, within_parents
+from prunus.measure.feet import Bools, feet, within_parents
 from prunus.model import Floats
 
 STEP = 0.01
@@ -44,7 +44,7 @@ def test_a_line_that_bends_leaves_at_a_usual_angle() -> None:
 ANY = (1.0, 1000.0)
 
 
-def left(line: Floats, inside: Flags, err: list[float], usual: tuple[float, float]) -> int:
+def left(line: Floats, inside: Bools, err: list[float], usual: tuple[float, float]) -> int:
     """The station of `UP` from which a line leaves."""
     lines, home = np.concatenate([UP, line]), np.array([UP[0], line[0]])
     found = feet(
