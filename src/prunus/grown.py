@@ -15,7 +15,8 @@ from prunus.field.votes import Threads, gather_votes
 from prunus.field.voxels import Voxels, voxels_of
 from prunus.growth.evidence import seeded_graph
 from prunus.growth.grow import Orchard
-from prunus.model import Floats, Ints, Kind, PointCloud, SeededGraph, Skeleton
+from prunus.growth.told import told_of
+from prunus.model import Floats, Ints, Kind, PointCloud, SeededGraph, Skeleton, Told
 from prunus.params import Parameters
 from prunus.result import Seconds, timed
 from prunus.sensing.isolate import Isolated
@@ -34,10 +35,11 @@ GROUND_M = 0.05
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Grown:
-    """The tree, the graph of its threads, what each point of the scan is, and notes."""
+    """The tree, the graph of its threads, what the field told, what each point is, and notes."""
 
     skeleton: Skeleton
     graph: SeededGraph
+    told: Told
     isolated: Isolated | None
     notes: list[str]
 
@@ -65,6 +67,7 @@ def grow_tree(
         at, notes = _on_wood(threads, at, cloud)
         orchard = Orchard.of(threads, at, alone=params.isolation.isolate == "never")
         skeleton = orchard.tree_at(orchard.main)
+        told = told_of(skeleton, orchard, field)
     with timed(seconds, "isolate"):
         isolated = Isolated(_kinds(cloud, voxels, orchard), skeleton.xyz[0], skeleton.xyz[0])
         raw = isolated.removed >= params.isolation.raw_from
@@ -78,7 +81,8 @@ def grow_tree(
     if at is None:
         place = cloud.words_for(skeleton.xyz[0])
         notes.append(f"no base was given: the foot of the trunk was found at {place}")
-    return Grown(skeleton=skeleton, graph=graph, isolated=isolated if raw else None, notes=notes)
+    isolated_or_none = isolated if raw else None
+    return Grown(skeleton=skeleton, graph=graph, told=told, isolated=isolated_or_none, notes=notes)
 
 
 def _on_wood(
