@@ -100,17 +100,17 @@ def test_what_is_wrong_is_trusted_less() -> None:
 
 @pytest.mark.parametrize(
     ("changes", "part"),
-    [
-        ({"astray": 0.4, "unclear": 1.2}, "wood"),
-        ({"lead": -0.5}, "meant"),
-        ({"unclear": 1.2}, "form"),
-    ],
+    [({"astray": 0.4, "unclear": 1.2}, "wood"), ({"lead": -0.5}, "meant")],
 )
 def test_a_doubt_in_the_whole_lowers_all(changes: dict[str, float], part: str) -> None:
     fine, less = trust_in_grown(known()), trust_in_grown(known(**changes))
     assert getattr(less, part) < getattr(fine, part)
     assert less.tree < fine.tree
     assert (less.branch < fine.branch).all()
+
+
+def test_roles_that_are_unclear_are_of_another_form() -> None:
+    assert trust_in_grown(known(unclear=1.2)).form < trust_in_grown(known()).form
 
 
 def test_unsure_labels_lower_the_trust_in_branches() -> None:
