@@ -1,4 +1,4 @@
-"""Drawn clouds of what is no tree, Z up, metres: what may lie in a folder of scans by mistake."""
+"""Drawn clouds of what is no fruit tree, Z up, metres: what may lie in a folder by mistake."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from bench.shapes import Piece, limb, scanned, towards
+from bench.shapes import Piece, dressed, limb, scanned, towards
 from prunus.model import Floats
 
 Rng = np.random.Generator
@@ -124,10 +124,64 @@ def brush(rng: Rng) -> Floats:
     return scanned(rng, pieces, front=bool(rng.integers(2)))
 
 
+def fir(rng: Rng) -> Floats:
+    """A conifer of which trunk and limbs are in view: whorls that droop, in needles."""
+    trunk = limb(
+        rng, np.zeros(3), towards(0, 0), rng.uniform(2, 3.5), rng.uniform(0.03, 0.06), 0.02
+    )
+    twigs: list[Piece] = []
+    for start, _, _ in trunk[2:]:
+        share = start[2] / trunk[-1][1][2]
+        for azimuth in rng.uniform(0, 2 * math.pi, int(rng.integers(4, 8))):
+            way = towards(rng.uniform(85, 115), azimuth)
+            twigs += limb(rng, start, way, 1.0 * (1.1 - share), 0.008)
+    needles: list[Piece] = []
+    for start, end, _ in twigs:
+        for along in rng.uniform(0, 1, (25, 1)):
+            way = rng.normal(size=3)
+            foot = (1 - along) * start + along * end
+            needles.append((foot, foot + 0.025 * way / np.linalg.norm(way), 0.001))
+    return scanned(rng, trunk + twigs + needles, front=bool(rng.integers(2)))
+
+
+def bush(rng: Rng) -> Floats:
+    """A shrub: many crooked stems out of one place, each with branches all round."""
+    pieces: list[Piece] = []
+    for _ in range(int(rng.integers(8, 20))):
+        start = np.array([*rng.normal(0, 0.08, 2), 0.0])
+        way = towards(rng.uniform(5, 55), rng.uniform(0, 2 * math.pi))
+        stem = limb(rng, start, way, rng.uniform(0.8, 1.8), rng.uniform(0.006, 0.014), 0.15)
+        pieces += stem + dressed(rng, stem, int(rng.integers(6, 15)), 0.5, (20, 80))
+    return scanned(rng, pieces, front=bool(rng.integers(2)))
+
+
+def fence(rng: Rng) -> Floats:
+    """Wire mesh between posts, or rails."""
+    wide, height, mesh = rng.uniform(2, 4), rng.uniform(1, 1.8), rng.uniform(0.08, 0.4)
+    thick = rng.uniform(0.002, 0.02)
+    pieces: list[Piece] = []
+    for x in np.arange(0, wide, mesh):
+        pieces.append((np.array([x, 0, 0]), np.array([x, 0, height]), thick))
+    for z in np.arange(mesh, height, mesh):
+        pieces.append((np.array([0, 0, z]), np.array([wide, 0, z]), thick))
+    return scanned(rng, pieces, front=bool(rng.integers(2)))
+
+
+def litter(rng: Rng) -> Floats:
+    """What was pruned off, whole branches of it, on a heap on the ground."""
+    pieces: list[Piece] = []
+    for _ in range(int(rng.integers(15, 50))):
+        start = np.array([*rng.normal(0, 0.6, 2), rng.uniform(0, 0.4)])
+        way = towards(rng.uniform(70, 110), rng.uniform(0, 2 * math.pi))
+        one = limb(rng, start, way, rng.uniform(0.6, 1.8), rng.uniform(0.006, 0.02))
+        pieces += one + dressed(rng, one, int(rng.integers(2, 8)), 0.3, (20, 80))
+    return scanned(rng, pieces, front=bool(rng.integers(2)))
+
+
 NO_TREES: dict[str, Callable[[Rng], Floats]] = {
     "wall": wall, "ground": ground, "ball": ball, "box": box, "noise": noise, "leaves": leaves,
     "hedge": hedge, "heap": heap, "spruce": spruce, "grass": grass, "pole": pole,
-    "trellis": trellis, "brush": brush,
+    "trellis": trellis, "brush": brush, "fir": fir, "bush": bush, "fence": fence, "litter": litter,
 }  # fmt: skip
 
 

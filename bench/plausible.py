@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bench.nontrees import NO_TREES
+from bench.trust_cases import CHAIN
 from prunus.errors import NoTreeError, PrunusError
 from prunus.lab.simulate.wide import simulate_wide
 from prunus.model import Bools, Floats, Kind, PointCloud
@@ -23,7 +24,6 @@ from prunus.pipeline import follow
 from prunus.plausible import Evidence
 from prunus.result import Result
 from prunus.sensing.diagnosis import linear_wood, spacing, spread
-from prunus.sensing.trunks import find_trunks
 from prunus.simulate.scan import simulate_scan
 
 SHOWN = 2000
@@ -94,7 +94,7 @@ def seen(drawn: Drawn) -> Record:
               "spacing": spacing(xyz), "size": float(np.ptp(xyz, axis=0).max())}  # fmt: skip
     try:
         isolate = "auto" if drawn.base is None else "never"
-        result = follow(cloud, drawn.base, {"isolation": {"isolate": isolate}})
+        result = follow(cloud, drawn.base, CHAIN.changed("isolation", isolate=isolate))
     except PrunusError:
         return record | {"refused": 1.0, "nothing": 1.0}
     return record | {"nothing": 0.0} | found(result, drawn.own)
@@ -105,10 +105,9 @@ def found(result: Result, own: Bools) -> Record:
     evidence = Evidence.of(result)
     record = {name: float(value) for name, value in vars(evidence).items()}
     trust = result.trust
-    record["trunk"] = float(bool(find_trunks(result.graph.scored)))
-    record["trust"] = 0.0 if trust is None else trust.tree
+    for name in ("tree", "wood", "form", "meant"):
+        record[f"trust, {name}"] = 0.0 if trust is None else float(getattr(trust, name))
     if result.isolated is not None:
-        record["torn"] = result.isolated.torn
         record["kept"] = float(result.isolated.target[own].mean()) if own.any() else 0.0
     try:
         evidence.check()
@@ -143,7 +142,7 @@ def main() -> None:
         print(f"{what}: {len(records)}")
         for name in dict.fromkeys(key for record in records for key in record):
             values = [record[name] for record in records if name in record]
-            print(f"  {name:10}", *(f"{at:8.3g}" for at in np.quantile(values, QUANTILES)),
+            print(f"  {name:12}", *(f"{at:8.3g}" for at in np.quantile(values, QUANTILES)),
                   f"  of {len(values)}")  # fmt: skip
 
 

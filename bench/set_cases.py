@@ -66,6 +66,11 @@ def ordinary(seed: int) -> Scan:
     return simulate_scan(seed, "ordinary")
 
 
+def clean(seed: int) -> Scan:
+    """The scan of the clean setting."""
+    return simulate_scan(seed, "clean")
+
+
 SETS = {
     "straight": TreeSet("textbook UFO trees, all round, 50 000 points, 1 mm", all_round, 0, 8),
     "straight_side": TreeSet(
@@ -76,6 +81,7 @@ SETS = {
     ),
     "hard": TreeSet("simulate_scan 'hard'; the tree's own points, cut out by hand", hard, 900_000),
     "hard_raw": TreeSet("the same rows, nothing cut out", hard, 900_000, raw=True),
+    "clean": TreeSet("simulate_scan 'clean', nothing cut out", clean, 900_000, raw=True),
     "any": TreeSet("simulate_wide; the tree's own points", simulate_wide, 1_000_000),
     "any_raw": TreeSet("the same, nothing cut out", simulate_wide, 1_000_000, raw=True),
 }

@@ -120,6 +120,8 @@ GOOD = Evidence(length=9.0, across=0.3, explained=0.9, linear=0.7, rise=0.8)
         ({"across": 0.001}, "but a straight line"),
         ({"step": 0.1}, "no tree was found$"),
         ({"linear": 0.1}, "but a surface or a heap"),
+        ({"sure": 0.15}, "but a heap: what was followed is not like branches"),
+        ({"wood": 0.04}, "but what is 4% likely bare wood: a surface, a heap or leaves"),
         ({"explained": 0.05}, "explain 5% of the points"),
         ({"explained": 0.4, "trunk": False}, "60% of the points are not .* no trunk is in view"),
         ({"explained": 0.4, "trust": 0.65}, "60% of the points are not .* 65% of its edges"),

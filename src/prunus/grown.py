@@ -11,11 +11,12 @@ import numpy as np
 
 from prunus.errors import NoTreeError, PrunusError
 from prunus.field.network import see_field
-from prunus.field.votes import Threads, gather_votes
+from prunus.field.votes import PointField, Threads, gather_votes
 from prunus.field.voxels import Voxels, voxels_of
 from prunus.growth.evidence import seeded_graph
 from prunus.growth.grow import Orchard
-from prunus.model import Floats, Ints, Kind, PointCloud, SeededGraph, Skeleton, parents_first
+from prunus.growth.told import told_of
+from prunus.model import Floats, Ints, Kind, PointCloud, SeededGraph, Skeleton, Told, parents_first
 from prunus.params import Parameters
 from prunus.result import Seconds, timed
 from prunus.sensing.isolated import Isolated
@@ -32,7 +33,7 @@ GROUND_M = 0.05
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class View:
-    """A cloud, the points of it that were drawn, their voxels, and all trees that grow in it.
+    """A cloud, the points of it that were drawn, the field over their voxels, and all trees.
 
     `notes`: what is to be said of a base that was given.
     """
@@ -40,6 +41,7 @@ class View:
     cloud: PointCloud
     drawn: PointCloud
     voxels: Voxels
+    field: PointField
     orchard: Orchard
     notes: list[str]
 
@@ -68,7 +70,9 @@ class View:
         with timed(seconds, "growth"):
             at, notes = _on_wood(threads, at, cloud)
             orchard = Orchard.of(threads, at, alone=params.isolation.isolate == "never")
-        return cls(cloud=cloud, drawn=drawn, voxels=voxels, orchard=orchard, notes=notes)
+        return cls(
+            cloud=cloud, drawn=drawn, voxels=voxels, field=field, orchard=orchard, notes=notes
+        )
 
     def isolated(self, tree: Skeleton) -> Isolated:
         """What each point of the cloud is to a tree."""
@@ -102,10 +106,11 @@ class View:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Grown:
-    """The tree, the graph of its threads, what each point of the scan is, and notes."""
+    """The tree, the graph of its threads, what the field told, what each point is, and notes."""
 
     skeleton: Skeleton
     graph: SeededGraph
+    told: Told
     isolated: Isolated | None
     notes: list[str]
 
@@ -124,6 +129,7 @@ def grow_tree(
     view = View.of(cloud, at, params, rng, seconds)
     with timed(seconds, "growth"):
         skeleton = view.tree()
+        told = told_of(skeleton, view.orchard, view.field)
     with timed(seconds, "isolate"):
         isolated = view.isolated(skeleton)
         raw = isolated.removed >= params.isolation.raw_from
@@ -133,7 +139,8 @@ def grow_tree(
     if at is None:
         place = cloud.words_for(skeleton.xyz[0])
         notes = [*notes, f"no base was given: the foot of the trunk was found at {place}"]
-    return Grown(skeleton=skeleton, graph=graph, isolated=isolated if raw else None, notes=notes)
+    isolated_or_none = isolated if raw else None
+    return Grown(skeleton=skeleton, graph=graph, told=told, isolated=isolated_or_none, notes=notes)
 
 
 def _by_nodes(tree: Skeleton) -> Skeleton:

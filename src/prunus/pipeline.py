@@ -69,14 +69,11 @@ def _grown(cloud: PointCloud, at: Floats | None, params: Parameters, seed: int) 
     seconds: Seconds = {}
     grown = grow_tree(cloud, at, params, np.random.default_rng(seed), seconds)
     with timed(seconds, "measures"):
-        warnings = [UNKNOWN_TRUST, *remarks(grown.skeleton, grown.graph, for_tips=False)]
+        warnings = remarks(grown.skeleton, grown.graph, for_tips=False)
     return Result(
         grown.skeleton, grown.graph, None, np.zeros(0), seconds, params, seed, warnings,
-        grown.notes, cloud, grown.isolated,
+        grown.notes, cloud, grown.isolated, grown.told,
     )  # fmt: skip
-
-
-UNKNOWN_TRUST = "how far to trust a tree that grew on votes is not measured yet"
 
 
 def _judged(result: Result) -> Result:

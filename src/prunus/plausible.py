@@ -38,6 +38,11 @@ balls, boxes, heaps, suckers, trellises and cones of needles that pass as little
 LEAST_LINEAR, USUAL_LINEAR = 0.30, 0.40
 """On the 130 none had less than 0.38 (see `Evidence`); walls, balls and boxes had 0.07 to 0.28,
 what else is a surface up to 0.35."""
+LEAST_WOOD, LEAST_SURE = 0.10, 0.20
+"""What grew on votes is so likely a bare tree, and so sure in the mean: on 180 scans of trees
+(`bench.trust_cases`) 0.22 and 0.25 at least, on noise, walls, hedges, leaves and cones of needles
+0.01 to 0.6 and 0.15 to 0.31."""
+TINY = 1e-9
 USUAL_RISE = 0.45
 """Leaders rise so much a metre of their length: 0.51 at least on the 130, less than this on 11 of
 the 22 that lie."""
@@ -49,10 +54,11 @@ class Evidence:
 
     length: metres of skeleton; across: how far its points are off one line, metres; explained: the
     share of them within r_super of it; linear: how much the median superpoint looks like a piece
-    of a branch, 0 to 1, or the median confidence of a tree grown on votes; rise: metres up a metre
-    of leader; step: in which the coordinates come, metres. Of a scorer that tells categories:
-    trunk, whether one is in view; trust, the share of the edges that are likely right, asked for
-    where little is explained.
+    of a branch, 0 to 1; rise: metres up a metre of leader; step: in which the coordinates come,
+    metres. Of a scorer that tells categories: trunk, whether one is in view; trust, the share of
+    the edges that are likely right, asked for where little is explained. Of a tree that grew on
+    votes, in place of linear, trunk and trust: wood, how likely it is a bare tree at all, and sure,
+    the confidence of its edges in the mean over their length.
     """
 
     length: float
@@ -63,26 +69,29 @@ class Evidence:
     step: float = 0.0
     trunk: bool = True
     trust: float = 1.0
+    wood: float = 1.0
+    sure: float = 1.0
 
     @classmethod
     def of(cls, result: Result) -> Evidence:
         """The evidence in what the chain found."""
         skeleton, graph = result.in_house, result.graph
         length, explained = float(skeleton.lengths.sum()), explained_points(skeleton, graph)
-        trunk, trust = True, 1.0
-        if result.params.method == "default":
-            linear = float(np.median(skeleton.confidence[1:])) if len(skeleton) > 1 else 0.0
-        else:
+        linear, trunk, trust, wood, sure = 1.0, True, 1.0, 1.0, 1.0
+        if result.told is None:
             # Here, since it takes a compiler.
             from prunus.sensing.surroundings import Pieces
 
             linear = float(np.median(Pieces.of(graph.scored).linear))
             trunk = not graph.scored.category.size or bool(find_trunks(graph.scored))
-        if explained < MOST_EXPLAINED and result.trust is not None:
-            trust = result.trust.tree
+            if explained < MOST_EXPLAINED and result.trust is not None:
+                trust = result.trust.tree
+        elif result.trust is not None:
+            wood = result.trust.wood
+            sure = float(np.average(skeleton.confidence[1:], weights=skeleton.lengths[1:] + TINY))
         across = float(spread(graph.superpoints.cloud.xyz)[1])
         rise, step = rise_of_leaders(skeleton), coarseness(result.scan)
-        return cls(length, across, explained, linear, rise, step, trunk, trust)
+        return cls(length, across, explained, linear, rise, step, trunk, trust, wood, sure)
 
     def check(self) -> None:
         """Raise NoTreeError where it is no tree."""
@@ -100,6 +109,10 @@ class Evidence:
             yield ", but a straight line"
         if self.linear < LEAST_LINEAR:
             yield ", but a surface or a heap"
+        if self.sure < LEAST_SURE:
+            yield ", but a heap: what was followed is not like branches"
+        if self.wood < LEAST_WOOD:
+            yield f", but what is {self.wood:.0%} likely bare wood: a surface, a heap or leaves"
         if self.explained < LEAST_EXPLAINED:
             yield f": its branches explain {self.explained:.0%} of the points"
         heap = f", but a hedge or a heap of twigs: {1 - self.explained:.0%} of the points are not"

@@ -12,9 +12,9 @@ import numpy as np
 
 from prunus.measure import branches
 from prunus.measure.refine import Refined, refined
-from prunus.measure.trust import Known, Trust, trust_in
+from prunus.measure.trust import Known, KnownGrown, Trust, trust_in, trust_in_grown
 from prunus.measure.trust.review import review_of
-from prunus.model import Floats, Label, PointCloud, SeededGraph, Skeleton
+from prunus.model import Floats, Label, PointCloud, SeededGraph, Skeleton, Told
 from prunus.params import Parameters
 from prunus.sensing.isolated import Isolated
 
@@ -41,7 +41,8 @@ class Result:
 
     The score is None, and the history empty, where the method goes by none.
     `in_house` is the skeleton in the house frame (Z up); `skeleton` in the frame of the input.
-    `scan` is all that was given; `isolated` what each point of it is, where it was a raw scan.
+    `scan` is all that was given; `isolated` what each point of it is, where it was a raw scan;
+    `told` what the point field told, where the tree grew on its votes.
     """
 
     in_house: Skeleton
@@ -55,6 +56,7 @@ class Result:
     notes: list[str]
     scan: PointCloud
     isolated: Isolated | None
+    told: Told | None = None
 
     def __repr__(self) -> str:
         leaders, sides = (
@@ -85,8 +87,12 @@ class Result:
 
     @cached_property
     def trust(self) -> Trust | None:
-        """How far to trust it; None where it was not found by the learned score."""
-        if len(self.in_house) == 1 or self.params.method != "learned":
+        """How far to trust it; None where the paper's score found it."""
+        if len(self.in_house) == 1:
+            return None
+        if self.told is not None:
+            return trust_in_grown(KnownGrown(self.in_house, self.told))
+        if self.params.method != "learned":
             return None
         # Here, since it takes a compiler.
         from prunus.search import goes_by_learned_score, shipped_score

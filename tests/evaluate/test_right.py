@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from prunus.evaluate.right import right_branches
+from prunus.evaluate.right import right_branches, right_edges, well_placed_branches
 from prunus.measure import branches
 from prunus.model import Label, Skeleton
 from tests.drawn import tree
@@ -61,3 +61,21 @@ def test_of_two_along_one_true_branch_one_is_right() -> None:
     label = [*truth.label, *truth.label[leader[1:]]]
     double = Skeleton.build(np.concatenate([truth.xyz, beside]), parent, label)
     assert wrong(double, truth) == [Label.LEADER]
+
+
+def test_an_edge_is_right_on_true_wood_of_its_label() -> None:
+    truth = tree()
+    assert right_edges(truth, truth).all()
+    label = truth.label.copy()
+    label[label == Label.SIDE_BRANCH] = Label.LEADER
+    other = Skeleton.build(truth.xyz, truth.parent, label)
+    assert (right_edges(other, truth, labelled=False)).all()
+    assert right_edges(other, truth).sum() < len(truth) - 1
+
+
+def test_where_labels_are_none_a_branch_is_right_that_lies_on_wood() -> None:
+    truth, crossed = tree(), tree(CROSSED)
+    assert well_placed_branches(truth, truth).all()
+    placed = well_placed_branches(crossed, truth)
+    assert [one.label for one, fine in zip(branches(crossed), placed, strict=True)
+            if not fine] == [Label.SIDE_BRANCH]  # fmt: skip

@@ -114,6 +114,26 @@ def _by_label(labels: Ints) -> Ints:
     return np.bincount(labels, minlength=len(Label))
 
 
+def on_true_wood(ours: Pieces, branch: Ints, truth: Skeleton, labelled: bool) -> Bools:
+    """Which pieces (S,) of branches (S,) lie on true wood, under their label where `labelled`.
+
+    All of the true tree counts. A piece of it is had by the branch that lies nearest to it: of two
+    strands along one branch one is wrong.
+    """
+    theirs = pieces_of(truth)
+    near = _near(ours, theirs)
+    if labelled:
+        near = near[:, _agree(ours, theirs, near)]
+    one, other = near
+    away = np.linalg.norm(ours.xyz[one] - theirs.xyz[other], axis=1)
+    order = np.argsort(-away, kind="stable")
+    had_by = np.full(len(theirs), NONE)
+    had_by[other[order]] = branch[one[order]]  # the nearest comes last
+    right = np.zeros(len(ours), np.bool_)
+    right[one[had_by[other] == branch[one]]] = True
+    return right
+
+
 def geometry_f1(predicted: Skeleton, truth: Skeleton, counts: Bools, tolerance: float) -> float:
     """F1 of the geometry at a tolerance, metres, of the same pieces.
 

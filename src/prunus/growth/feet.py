@@ -97,6 +97,7 @@ def _own_feet(graph: ThreadGraph, feet: list[int], limit: Floats) -> Ints:
         (against < against.T + ALIKE_M) & (rank[:, None] < rank)
     )
     led_to = ((against <= limit) & easier).any(axis=0)
+    led_to[0] &= not led_to.all()  # in a circle, as on a ball, each leads to the next
     return np.asarray(np.array(feet)[~led_to], np.int64)
 
 
@@ -117,7 +118,12 @@ def _low_end(threads: Threads, nodes: Ints) -> tuple[int, float, float]:
 
 
 def main_foot(threads: Threads, foot: Ints, feet: Ints) -> int:
-    """Of the trees in view that at which the scanner looks; `foot` (N,) is that of each node.
+    """Of the trees in view that at which the scanner looks; `foot` (N,) is that of each node."""
+    return int(feet[standing(threads, foot, feet).argmax()])
+
+
+def standing(threads: Threads, foot: Ints, feet: Ints) -> Floats:
+    """How much speaks (F,), in log odds, for the tree of each of the feet as the one meant.
 
     It stands in the middle and in front, and much of it is in view (a conditional logit).
     """
@@ -130,7 +136,7 @@ def main_foot(threads: Threads, foot: Ints, feet: Ints) -> int:
     depth = own @ (points * threads.xyz[:, 1]) / np.maximum(wood, 1e-9)
     chance = MUCH * np.log1p(wood) - ASIDE * aside - FAR_ASIDE * aside**2
     chance -= BEHIND * depth + FOOT_BEHIND * threads.xyz[feet, 1]
-    return int(feet[chance.argmax()])
+    return np.asarray(chance)
 
 
 def _lowest(graph: ThreadGraph) -> Ints:

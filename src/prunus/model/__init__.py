@@ -11,6 +11,7 @@ from prunus.model.kind import Kind
 from prunus.model.rig import Camera, CloudView, DepthView, RigView
 from prunus.model.role import Role
 from prunus.model.skeleton import Label, Lines, Skeleton, parents_first
+from prunus.model.told import Told
 
 __all__ = [
     "FRAMES",
@@ -33,5 +34,6 @@ __all__ = [
     "SeededGraph",
     "Skeleton",
     "Superpoints",
+    "Told",
     "parents_first",
 ]

@@ -11,7 +11,10 @@ from prunus.model import Label
 from prunus.reading import read_toml
 
 SHIPPED = Path(__file__).parents[2] / "weights" / "trust.toml"
-"""The models that the package ships."""
+GROWN = SHIPPED.with_name("trust_grown.toml")
+"""The models that the package ships: of trees that were searched for, and that grew on votes."""
+WHOLE = ("meant", "wood", "form")
+"""What is asked of a grown tree as a whole, see `GrownModel`."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +36,35 @@ class Model:
         for label in Label:
             lines += self.branch[label].lines(label.word)
         return "\n".join([*lines, *self.edge.lines("edge")]) + "\n"
+
+
+@dataclass(frozen=True)
+class GrownModel:
+    """The same of a grown tree, should it be the tree that is meant, and a tree.
+
+    whole: that it is the tree that is `meant`, that it is a bare tree of `wood`, and that it is of
+    the training `form` whose labels it has.
+    """
+
+    parts: Model
+    whole: dict[str, Odds]
+
+    @classmethod
+    def from_toml(cls, path: Path) -> GrownModel:
+        """The model in a file."""
+        held = read_toml(path)
+        return cls(Model.from_toml(path), {name: Odds.of(held[name]) for name in WHOLE})
+
+    def to_toml(self) -> str:
+        """The file that `from_toml` reads."""
+        lines = [line for name in WHOLE for line in self.whole[name].lines(name)]
+        return self.parts.to_toml() + "\n".join(lines) + "\n"
+
+
+@cache
+def grown_model() -> GrownModel:
+    """The model of grown trees that the package ships."""
+    return GrownModel.from_toml(GROWN)
 
 
 @cache

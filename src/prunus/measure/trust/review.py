@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from prunus.measure.branches import branches
 from prunus.measure.names import branch_names
-from prunus.measure.trust import Trust
+from prunus.measure.trust import WOOD, Trust
 from prunus.model import Label, Skeleton
 
 TREE = 0.85
@@ -13,9 +13,35 @@ FRAME = 0.30
 """Trunk, supports and leaders less likely right than this are looked at."""
 
 
+FORM, MEANT = 0.85, 0.70
+"""So likely is it of the form that was learned, and the one that is meant, where nothing is said of
+it."""
+
+
+def whole_review(trust: Trust) -> list[str]:
+    """What is doubtful about a tree before its branches are looked at; often nothing."""
+    found = []
+    if trust.wood < WOOD:
+        found.append(
+            f"not my kind of tree: {trust.wood:.0%} likely a bare fruit tree at all, by how its "
+            "wood runs; nothing in it is to be trusted before a person has looked"
+        )
+    if trust.form < FORM:
+        found.append(
+            f"not my kind of tree: {trust.form:.0%} likely trained as a UFO tree; where its "
+            "branches run may be right, what they are called means little"
+        )
+    if trust.meant < MEANT:
+        found.append(
+            f"another tree in view may be meant as well ({trust.meant:.0%} likely this one): "
+            "--base says which"
+        )
+    return found
+
+
 def review_of(skeleton: Skeleton, trust: Trust) -> list[str]:
     """What is doubtful about a skeleton in the house frame as a whole; often nothing."""
-    found = []
+    found = whole_review(trust)
     if trust.tree < TREE:
         found.append(f"only {trust.tree:.0%} of its edges are likely right")
     some = branches(skeleton)
