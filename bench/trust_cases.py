@@ -36,7 +36,7 @@ HELD_OUT = 100_000
 FORMS = tuple(HABITS)
 """Fruit trees of other training forms, drawn otherwise than by our simulators."""
 KINDS = tuple(NO_TREES)
-CHAIN = Parameters.growth()
+CHAIN = Parameters()
 MEANT = 0.5
 """Where so large a share of the edges lies on wood of the tree, whatever its label, it was taken
 for the one that is meant."""

@@ -223,7 +223,6 @@ def test_an_old_plan_goes_by_its_scan(folder: Path, plan: PlanFile, tmp_path: Pa
     assert not into_bag(folder / "out" / "refined.json", other, tmp_path / "b")
 
 
-@pytest.mark.skip(reason="trust of the default: fitted next")
 def test_a_refined_skeleton_keeps_the_names_that_the_report_gave(
     folder: Path, tmp_path: Path
 ) -> None:

@@ -32,32 +32,28 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return home
 
 
-NEXT = pytest.mark.skip(reason="trust of the default: fitted next")
 """A ball is taken for a tree until then."""
 
 
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        pytest.param("skeletonize ball.npy --frame z-up -o out", "no tree was found", marks=NEXT),
+        pytest.param("skeletonize ball.npy --frame z-up -o out", "no tree was found"),
         ("skeletonize tree.npy --frame z-up --base 9 9 9 -o out", "m from the nearest wood"),
-        pytest.param("cuts ball.npy --frame z-up", "no tree was found", marks=NEXT),
+        pytest.param("cuts ball.npy --frame z-up", "no tree was found"),
         ("cuts alone.json", "holds a base alone; expected a tree to cut"),
         pytest.param(
             "isolate ball.npy --frame z-up --list",
             "no foot with branches is in view",
-            marks=NEXT,
         ),
-        pytest.param("isolate ball.npy --frame z-up -o t.ply", "a surface or a heap", marks=NEXT),
+        pytest.param("isolate ball.npy --frame z-up -o t.ply", "a surface or a heap"),
         pytest.param(
             "isolate ball.npy --frame z-up --all -o t.ply",
             "no foot with branches is in view",
-            marks=NEXT,
         ),
         pytest.param(
             "isolate ball.npy --frame z-up --at 0 0 -0.3 -o t.ply",
             "a surface or a heap",
-            marks=NEXT,
         ),
         ("evaluate drawn.json alone.json", "holds a base alone; expected a tree to measure"),
         ("evaluate alone.json drawn.json", "nothing of one lies by the other"),
@@ -76,7 +72,6 @@ def test_nothing_is_a_failure_with_a_reason(
     assert any(word in done.stderr for word in words.split()[1:3]), "the file is named"
 
 
-@NEXT
 def test_the_line_of_a_failure_is_not_ok(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(home)
     done = RUN.invoke(app, ["skeletonize", "ball.npy", "--frame", "z-up", "-o", "out", "--json"])

@@ -71,14 +71,8 @@ NO_TREES: dict[str, tuple[Callable[[], Floats], str]] = {
 }
 
 
-FITTED_NEXT = {"a wall", "a ball", "a solid", "twigs"}
-"""What the default takes for a tree, or refuses with another reason, until its trust is fitted."""
-
-
 @pytest.mark.parametrize("kind", NO_TREES)
 def test_what_is_no_tree_is_refused_with_the_reason(kind: str) -> None:
-    if kind in FITTED_NEXT:
-        pytest.skip("trust of the default: fitted next")
     points, reason = NO_TREES[kind]
     with pytest.raises(NoTreeError, match=reason):
         skeletonize(points())

@@ -21,7 +21,7 @@ from tests.conftest import simulated
 from tests.drawn import tree
 from tests.growth.drawn import TEXTBOOK, surface_of
 
-GROWTH = Parameters.growth()
+GROWTH = Parameters()
 FOR = ("least", "mean", "kind", "rival", "wood", "way", "straight", "explained", "edge", "branch",
        "lead", "sure")  # fmt: skip
 AGAINST = ("beside", "scatter", "unclear", "astray", "loose", "around")
