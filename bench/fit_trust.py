@@ -38,7 +38,7 @@ WHOLE = {
     "form": ("unclear", "frame", "fruit"),
 }
 """What tells of the whole tree."""
-MOST_BRANCHES, MOST_EDGES = 60, 300
+MOST_BRANCHES, MOST_EDGES = 200, 1000
 """No tree has more weight than so many of its branches of a label, or of its edges."""
 
 

@@ -82,11 +82,13 @@ def line_of_kind(name: str, some: list[Tried]) -> str:
     """What is printed of a kind that is not ours."""
     known = trusted(some)
     refused = len(some) - len(known) + sum(trust.wood < LEAST_WOOD for _, trust in known)
-    left = [trust for _, trust in known if trust.wood >= LEAST_WOOD]
-    silent = sum(not whole_review(trust) for trust in left)
-    most = max((trust.tree for trust in left), default=0.0)
-    return (f"  {name}: {len(some)}, {refused} refused, {len(left) - silent} said to be of another "
-            f"kind, {silent} in silence; trust at most {most:.2f}")  # fmt: skip
+    left = [(one, trust) for one, trust in known if trust.wood >= LEAST_WOOD]
+    said = sum(bool(whole_review(trust)) for _, trust in left)
+    sent = sum(bool(review_of(one.known.skeleton, trust)) for one, trust in left if one.known)
+    most = max((trust.tree for _, trust in left), default=0.0)
+    return (f"  {name}: {len(some)}, {refused} refused, {said} said to be of another kind, "
+            f"{sent - said} else sent to a person, {len(left) - sent} in silence; trust at most "
+            f"{most:.2f}")  # fmt: skip
 
 
 def main() -> None:

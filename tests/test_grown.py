@@ -53,6 +53,13 @@ def test_of_two_trees_that_at_the_base_is_taken_and_the_other_left_out(cloud: Fl
         assert np.abs(result.skeleton.xyz[:, 0] - base).max() < 1.0
 
 
+def test_another_tree_could_be_meant_where_no_base_says_which(cloud: Floats) -> None:
+    row = np.concatenate([cloud, cloud + np.array([2.2, 0, 0])])
+    open_question, told = skeletonize(row, params=GROWTH), skeletonize(row, [0, 0, 0], GROWTH)
+    assert any("another tree in view may be meant" in line for line in open_question.review)
+    assert not any("may be meant" in line for line in told.review)
+
+
 def test_what_was_isolated_is_the_tree_of_one_step(cloud: Floats) -> None:
     row = np.concatenate([cloud, cloud + np.array([2.2, 0, 0])])
     one = skeletonize(row, [0, 0, 0])

@@ -129,7 +129,7 @@ def grow_tree(
     view = View.of(cloud, at, params, rng, seconds)
     with timed(seconds, "growth"):
         skeleton = view.tree()
-        told = told_of(skeleton, view.orchard, view.field)
+        told = told_of(skeleton, view.orchard, view.field, given=at is not None)
     with timed(seconds, "isolate"):
         isolated = view.isolated(skeleton)
         raw = isolated.removed >= params.isolation.raw_from

@@ -19,13 +19,16 @@ MOST = 4.0
 TINY = 1e-9
 
 
-def told_of(tree: Skeleton, orchard: Orchard, field: PointField) -> Told:
-    """What the field from which an orchard grew tells of its tree that is meant."""
+def told_of(tree: Skeleton, orchard: Orchard, field: PointField, given: bool) -> Told:
+    """What the field from which an orchard grew tells of its tree that is meant.
+
+    `given`: its base was, so that no other can be.
+    """
     threads = orchard.graph.threads
     nodes = tree.superpoint
     return Told(
         role=threads.role[nodes], scatter=threads.scatter[nodes],
-        whole=_whole(tree, orchard, field) | {"lead": _lead(orchard)},
+        whole=_whole(tree, orchard, field) | {"lead": MOST if given else _lead(orchard)},
     )  # fmt: skip
 
 
