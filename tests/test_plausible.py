@@ -62,7 +62,7 @@ NO_TREES: dict[str, tuple[Callable[[], Floats], str]] = {
     "a ball": (ball, "surface or a heap|no wood can be followed"),
     "noise": (lambda: solid(1.0, 9000), "neighbouring points are about 0.0[4-8]"),
     "a solid": (lambda: solid(0.15, 5000), "surface or a heap"),
-    "twigs": (twigs, "no wood can be followed|a heap of twigs"),
+    "twigs": (twigs, "no wood can be followed|but a heap"),
     "a twig": (lambda: tree_points() * 0.025, "0.0.* x 0.0.* m, too little: is the unit right"),
     "20 m high": (lambda: tree_points() * 8.5, "points are about .* m apart in a cloud of 13.* m"),
     "200 m high": (lambda: tree_points() * 85, "a denser cloud, or another unit"),

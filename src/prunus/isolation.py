@@ -14,9 +14,10 @@ from prunus.io.classes import check_ply, write_classes
 from prunus.io.clouds import FileCloud, check_kind, write_cloud
 from prunus.model import Floats, Skeleton
 from prunus.params import Parameters
-from prunus.plausible import LEAST_LENGTH_M, LEAST_LINEAR
+from prunus.plausible import LEAST_LENGTH_M, LEAST_LINEAR, LEAST_SURE, sureness
 from prunus.sensing.diagnosis import explaining
 from prunus.sensing.isolated import Isolated
+from prunus.sensing.linear import linear_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,27 +55,32 @@ class Opened:
         """The tree that is meant; NoTreeError: it is none."""
         with naming(self.scan.file.path), explaining(self.scan.cloud):
             tree = self.view.tree()
-            if not is_tree(tree):
+            isolated = self.view.isolated(tree)
+            if not is_tree(tree, self.scan.cloud.xyz[isolated.target]):
                 raise NoTreeError("no tree was found: hardly any branches, or a surface or a heap")
-            return self.view.isolated(tree)
+            return isolated
 
     def trees(self) -> list[Isolated]:
         """The trees in view, that which is meant first; NoTreeError where there is none."""
         orchard = self.view.orchard
         feet = sorted(orchard.feet.tolist(), key=lambda foot: foot != orchard.main)
         grown = [orchard.tree_at(foot) for foot in feet]
-        found = [self.view.isolated(tree) for tree in grown if is_tree(tree)]
+        every = [self.view.isolated(tree) for tree in grown]
+        xyz = self.scan.cloud.xyz
+        found = [
+            own for tree, own in zip(grown, every, strict=True) if is_tree(tree, xyz[own.target])
+        ]
         if not found:
             with naming(self.scan.file.path), explaining(self.scan.cloud):
                 raise NoTreeError("no tree was found: no foot with branches is in view")
         return found
 
 
-def is_tree(skeleton: Skeleton) -> bool:
-    """Whether what grew from a foot is enough, and sure enough, to be a tree."""
-    if len(skeleton) == 1 or skeleton.lengths.sum() < LEAST_LENGTH_M:
+def is_tree(skeleton: Skeleton, xyz: Floats) -> bool:
+    """Whether what grew from a foot, of points (P, 3), is enough and sure enough to be a tree."""
+    if skeleton.lengths.sum() < LEAST_LENGTH_M or sureness(skeleton) < LEAST_SURE:
         return False
-    return bool(np.median(skeleton.confidence[1:]) >= LEAST_LINEAR)
+    return linear_of(xyz) >= LEAST_LINEAR
 
 
 def check_output(path: Path, classes: bool) -> None:

@@ -15,6 +15,7 @@ from prunus.measure.remarks import explained_points
 from prunus.model import Label, Skeleton
 from prunus.result import Result
 from prunus.sensing.diagnosis import LINE_M, STEP_M, coarse_words, coarseness, spread
+from prunus.sensing.linear import linear_of
 from prunus.sensing.trunks import find_trunks
 
 # The limits were set on simulated and drawn clouds alone, by `python -m bench.plausible`: 142 scans
@@ -38,11 +39,11 @@ balls, boxes, heaps, suckers, trellises and cones of needles that pass as little
 LEAST_LINEAR, USUAL_LINEAR = 0.30, 0.40
 """On the 130 none had less than 0.38 (see `Evidence`); walls, balls and boxes had 0.07 to 0.28,
 what else is a surface up to 0.35."""
-LEAST_WOOD, LEAST_SURE = 0.10, 0.20
+LEAST_WOOD, LEAST_SURE = 0.10, 0.23
 """What grew on votes is so likely a bare tree, and so sure in the mean: on 180 scans of trees
 (`bench.trust_cases`) 0.22 and 0.25 at least, on noise, walls, hedges, leaves and cones of needles
 0.01 to 0.6 and 0.15 to 0.31."""
-TINY = 1e-9
+TINY_M = 1e-9
 USUAL_RISE = 0.45
 """Leaders rise so much a metre of their length: 0.51 at least on the 130, less than this on 11 of
 the 22 that lie."""
@@ -53,12 +54,12 @@ class Evidence:
     """What tells a tree from what is none.
 
     length: metres of skeleton; across: how far its points are off one line, metres; explained: the
-    share of them within r_super of it; linear: how much the median superpoint looks like a piece
-    of a branch, 0 to 1; rise: metres up a metre of leader; step: in which the coordinates come,
-    metres. Of a scorer that tells categories: trunk, whether one is in view; trust, the share of
-    the edges that are likely right, asked for where little is explained. Of a tree that grew on
-    votes, in place of linear, trunk and trust: wood, how likely it is a bare tree at all, and sure,
-    the confidence of its edges in the mean over their length.
+    share of them within r_super of it; linear: how much the median superpoint (of a tree that grew
+    on votes, the median place of its cloud) looks like a piece of a branch, 0 to 1; rise: metres up
+    a metre of leader; step: in which the coordinates come, metres. Of a scorer that tells
+    categories: trunk, whether one is in view; trust, the share of the edges that are likely right,
+    asked for where little is explained. Of a tree that grew on votes in place of these: wood, how
+    likely it is a bare tree; sure, the confidence of its edges in the mean over their length.
     """
 
     length: float
@@ -77,7 +78,7 @@ class Evidence:
         """The evidence in what the chain found."""
         skeleton, graph = result.in_house, result.graph
         length, explained = float(skeleton.lengths.sum()), explained_points(skeleton, graph)
-        linear, trunk, trust, wood, sure = 1.0, True, 1.0, 1.0, 1.0
+        trunk, trust, wood, sure = True, 1.0, 1.0, 1.0
         if result.told is None:
             # Here, since it takes a compiler.
             from prunus.sensing.surroundings import Pieces
@@ -86,9 +87,10 @@ class Evidence:
             trunk = not graph.scored.category.size or bool(find_trunks(graph.scored))
             if explained < MOST_EXPLAINED and result.trust is not None:
                 trust = result.trust.tree
-        elif result.trust is not None:
-            wood = result.trust.wood
-            sure = float(np.average(skeleton.confidence[1:], weights=skeleton.lengths[1:] + TINY))
+        else:
+            linear = linear_of(graph.superpoints.cloud.xyz)
+            sure = sureness(skeleton)
+            wood = 1.0 if result.trust is None else result.trust.wood
         across = float(spread(graph.superpoints.cloud.xyz)[1])
         rise, step = rise_of_leaders(skeleton), coarseness(result.scan)
         return cls(length, across, explained, linear, rise, step, trunk, trust, wood, sure)
@@ -135,6 +137,13 @@ class Evidence:
                 f"the leaders hardly rise ({self.rise:.1f} m a metre): is Z up (see --frame)?"
             )
         return found
+
+
+def sureness(skeleton: Skeleton) -> float:
+    """The confidence of the edges of a skeleton in the mean over their length; 0: it has none."""
+    if len(skeleton) == 1:
+        return 0.0
+    return float(np.average(skeleton.confidence[1:], weights=skeleton.lengths[1:] + TINY_M))
 
 
 def rise_of_leaders(skeleton: Skeleton) -> float:
