@@ -111,3 +111,10 @@ def test_a_turned_tree_grows_turned(angle: float) -> None:
     there = grow(moved)
     assert np.allclose(here.xyz, there.xyz, atol=1e-6)
     assert (here.label == there.label).all()
+
+
+def test_a_scrap_in_the_middle_is_not_meant_where_a_tree_stands_aside() -> None:
+    scrap: Piece = (Role.STEM, [(1.6, -0.4, 0.1), (1.6, -0.4, 0.35)], 0.012)
+    arm: Piece = (Role.FRAMEWORK, [(0.9, 0, 0.65), (3.2, 0, 0.7)], 0.02)
+    tree = grow(threads_of([*TEXTBOOK, arm, scrap]))
+    assert abs(tree.xyz[0, 0]) < 0.02

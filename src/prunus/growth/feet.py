@@ -29,6 +29,8 @@ MUCH, ASIDE, FAR_ASIDE, BEHIND, FOOT_BEHIND = 0.53, 1.2, 1.15, 1.6, 1.0
 """How much likelier (log odds) a tree is meant for e times the wood; how much less for a metre from
 the middle of the view, and for the square of that; for a metre that its wood is behind that of the
 foremost, and its foot."""
+SCRAP, NOT_A_SCRAP = 0.1, 10.0
+"""What has so small a share of the wood of the largest is a scrap, and that is much less likely."""
 
 
 def find_feet(graph: ThreadGraph, given: int | None = None) -> Ints:
@@ -136,7 +138,7 @@ def standing(threads: Threads, foot: Ints, feet: Ints) -> Floats:
     depth = own @ (points * threads.xyz[:, 1]) / np.maximum(wood, 1e-9)
     chance = MUCH * np.log1p(wood) - ASIDE * aside - FAR_ASIDE * aside**2
     chance -= BEHIND * depth + FOOT_BEHIND * threads.xyz[feet, 1]
-    return np.asarray(chance)
+    return np.where(wood < SCRAP * wood.max(), chance - NOT_A_SCRAP, chance)
 
 
 def _lowest(graph: ThreadGraph) -> Ints:
