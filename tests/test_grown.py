@@ -55,7 +55,7 @@ def test_of_two_trees_that_at_the_base_is_taken_and_the_other_left_out(cloud: Fl
 
 def test_another_tree_could_be_meant_where_no_base_says_which(cloud: Floats) -> None:
     row = np.concatenate([cloud, cloud + np.array([2.2, 0, 0])])
-    open_question, told = skeletonize(row, params=GROWTH), skeletonize(row, [0, 0, 0], GROWTH)
+    open_question, told = skeletonize(row), skeletonize(row, [0, 0, 0])
     assert any("another tree in view may be meant" in line for line in open_question.review)
     assert not any("may be meant" in line for line in told.review)
 
