@@ -16,7 +16,6 @@ from typing import NamedTuple
 import numpy as np
 
 from bench.nontrees import NO_TREES
-from bench.trust_cases import CHAIN
 from prunus.errors import NoTreeError, PrunusError
 from prunus.lab.simulate.wide import simulate_wide
 from prunus.model import Bools, Floats, Kind, PointCloud
@@ -94,7 +93,7 @@ def seen(drawn: Drawn) -> Record:
               "spacing": spacing(xyz), "size": float(np.ptp(xyz, axis=0).max())}  # fmt: skip
     try:
         isolate = "auto" if drawn.base is None else "never"
-        result = follow(cloud, drawn.base, CHAIN.changed("isolation", isolate=isolate))
+        result = follow(cloud, drawn.base, {"isolation": {"isolate": isolate}})
     except PrunusError:
         return record | {"refused": 1.0, "nothing": 1.0}
     return record | {"nothing": 0.0} | found(result, drawn.own)

@@ -23,7 +23,6 @@ from prunus.evaluate.right import right_branches, right_edges, well_placed_branc
 from prunus.io.safely import write_bytes
 from prunus.measure.trust import KnownGrown
 from prunus.model import Bools, Floats, PointCloud
-from prunus.params import Parameters
 from prunus.pipeline import follow
 from prunus.result import Result
 
@@ -36,7 +35,6 @@ HELD_OUT = 100_000
 FORMS = tuple(HABITS)
 """Fruit trees of other training forms, drawn otherwise than by our simulators."""
 KINDS = tuple(NO_TREES)
-CHAIN = Parameters()
 MEANT = 0.5
 """Where so large a share of the edges lies on wood of the tree, whatever its label, it was taken
 for the one that is meant."""
@@ -97,7 +95,7 @@ def _judged(result: Result, case: Case) -> tuple[Bools, Bools, bool]:
 def result_of(xyz: Floats) -> Result | None:
     """What the chain makes of points (P, 3), with no option; None where it refuses them."""
     try:
-        return follow(PointCloud.from_xyz(xyz), params=CHAIN)
+        return follow(PointCloud.from_xyz(xyz))
     except PrunusError:
         return None
 

@@ -14,14 +14,12 @@ from prunus.measure.trust import GrownModel, KnownGrown, Trust, grown_model, tru
 from prunus.measure.trust.grown import of_branches, of_edges, of_tree
 from prunus.measure.trust.review import whole_review
 from prunus.model import Floats, Label, Role, Skeleton, Told
-from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.result import Result
 from tests.conftest import simulated
 from tests.drawn import tree
 from tests.growth.drawn import TEXTBOOK, surface_of
 
-GROWTH = Parameters()
 FOR = ("least", "mean", "kind", "rival", "wood", "way", "straight", "explained", "edge", "branch",
        "lead", "sure")  # fmt: skip
 AGAINST = ("beside", "scatter", "unclear", "astray", "loose", "around")
@@ -45,7 +43,7 @@ def known(picture: Skeleton | None = None, **changes: float) -> KnownGrown:
 
 @pytest.fixture(scope="module")
 def textbook() -> Result:
-    return skeletonize(surface_of(TEXTBOOK, np.random.default_rng(0)), params=GROWTH)
+    return skeletonize(surface_of(TEXTBOOK, np.random.default_rng(0)))
 
 
 def test_the_model_survives_its_file(tmp_path: Path) -> None:
@@ -90,7 +88,7 @@ def test_what_is_wrong_is_trusted_less() -> None:
     right, wrong = list[float](), list[float]()
     for seed in (2, 4):
         truth, cloud = simulated(seed)
-        result = skeletonize(cloud, params=GROWTH)
+        result = skeletonize(cloud)
         assert result.trust is not None
         fine = right_edges(result.skeleton, truth)
         right += result.trust.edge[1:][fine].tolist()
@@ -188,7 +186,7 @@ def straw(rng: np.random.Generator) -> Floats:
 @pytest.mark.parametrize("kind", [needles, barrel, straw])
 def test_what_is_no_tree_is_refused_or_said(kind: Callable[[np.random.Generator], Floats]) -> None:
     try:
-        review = skeletonize(kind(np.random.default_rng(3)), params=GROWTH).review
+        review = skeletonize(kind(np.random.default_rng(3))).review
     except NoTreeError as error:
         review = [f"not my kind of tree: {error}"]
     assert any("not my kind of tree" in line for line in review)
