@@ -25,6 +25,7 @@ FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftsh
          "--disable-component-update", "--disable-sync"]  # fmt: skip
 PATIENCE = 180.0
 """Seconds after which nothing more is expected; a slow machine compiles the kernels meanwhile."""
+PLAIN = Settings()
 
 
 def until(holds: Callable[[], Any], what: str) -> Any:
@@ -206,9 +207,14 @@ def opened(browser: Any, orchard: Path, tmp_path: Path) -> Iterator[Callable[...
 
     ends: list[Callable[[], None]] = []
 
-    def open_one(name: str = "oak.ply", token: str | None = None, work: Path = tmp_path) -> Visit:
+    def open_one(
+        name: str = "oak.ply",
+        token: str | None = None,
+        work: Path = tmp_path,
+        settings: Settings = PLAIN,
+    ) -> Visit:
         items = items_in(orchard / name, work)
-        studio = Studio(items, Settings(), "127.0.0.1", 0, token)
+        studio = Studio(items, settings, "127.0.0.1", 0, token)
         page = new_page(browser)
         ends.extend([page.close, studio.stop])
         visit = Visit(page, studio)

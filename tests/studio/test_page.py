@@ -16,6 +16,7 @@ from prunus.corrections import AddPath, Settings
 from prunus.io.plans import read_plan
 from prunus.io.skeletons import read_skeleton
 from prunus.model import Label
+from prunus.params import Parameters
 from prunus.studio.modes import cuts
 from prunus.studio.modes.correct import REACHES
 from prunus.studio.modes.mode import put
@@ -211,7 +212,7 @@ def drag_a_box(page: Any) -> None:
 
 
 def test_edges_are_labelled_one_key_each(opened: Opened, tmp_path: Path) -> None:
-    visit = opened()
+    visit = opened(settings=Settings(params=Parameters.paper()))
     visit.press("Label")
     visit.reads("0 of")
     asked = [visit.desk.mode.queue.edge]
