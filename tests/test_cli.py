@@ -266,7 +266,7 @@ def test_a_bag_is_an_input_like_any_other(
         (["tree.ply", "--nonsense"], 2, "No such option"),
         (["hollow"], 1, "no point cloud in this folder"),
         (["tree.ply", "-o", "typo.toml"], 1, "typo.toml: is a file; expected a folder"),
-        (["pieces.xyz", "--base", "0", "0", "0"], 1, "no wood can be followed from its base"),
+        (["pieces.xyz", "--base", "0", "0", "0"], 1, "3.03 m from the nearest wood"),
     ],
 )
 def test_bad_input_gets_one_clear_line_and_a_status(

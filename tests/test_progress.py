@@ -173,11 +173,9 @@ def test_standard_output_is_json_alone_whatever_is_said_beside_it(tmp_path: Path
 
 
 LONG = [
-    "skeletonize scan.ply -o out", "skeletonize scan.ply -o out --params paper",
-    "isolate scan.ply --list", "cuts scan.ply", "fuse rig/tree_000003 -o raw.ply", "demo -o demo",
+    "skeletonize scan.ply -o out --params paper", "fuse rig/tree_000003 -o raw.ply", "demo -o demo",
     "simulate -n 1 -o orchard", "experiment -o results --trees 1 --draws 1",
     "train rig -o w.onnx --jobs 1",
-    "evaluate rig/tree_000003/truth.json rig/tree_000003/truth.json",
 ]  # fmt: skip
 
 

@@ -61,8 +61,10 @@ class Kind:
         return self.name
 
 
+PARAMS = 'method = "paper"\n[search]\nrefine = false\nK = 7 # ü\n'
+
 KINDS = [
-    Kind("params.toml", "[search]\nrefine = false\nK = 7 # ü\n", Parameters.from_toml, "K = 7"),
+    Kind("params.toml", PARAMS, Parameters.from_toml, "K = 7"),
     Kind("rules.toml", "[height]\nover = 2.5 # ü\n", CutRules.from_toml, "over = 2.5"),
     Kind("skeleton.json", skeleton_text(), read_skeleton, '"seed": 3'),
     Kind("plan.json", json.dumps(PLAN), read_plan, '"confidence": 0.97'),

@@ -277,7 +277,7 @@ def test_cuts_are_planned_looked_at_and_saved(
 
 
 def test_the_mode_stays_on_with_another_tree(opened: Opened) -> None:
-    visit = opened("")
+    visit = opened("", settings=Settings(params=Parameters.paper()))
     visit.page.goto(visit.studio.url)
     visit.reads("cannot be opened")
     visit.press("Label")

@@ -6,6 +6,7 @@ import pytest
 from prunus.corrections import AddPath, Draft, State
 from prunus.corrections.steps import stepped
 from prunus.model import Label
+from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.studio.modes.path import Path, Scope
 from prunus.studio.picture import Slab
@@ -16,7 +17,7 @@ from tests.conftest import simulated
 @pytest.fixture(scope="module")
 def scope() -> Scope:
     truth, cloud = simulated(4)
-    state = State.of(skeletonize(cloud, truth.xyz[0]))
+    state = State.of(skeletonize(cloud, truth.xyz[0], Parameters.paper()))
     return Scope(picture_of(state, state.result.in_house), state, Slab())
 
 

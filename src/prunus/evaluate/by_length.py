@@ -11,13 +11,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_array
 from scipy.sparse.csgraph import maximum_bipartite_matching
 from scipy.spatial import cKDTree
 
 from prunus.evaluate.along import Pieces, asked_of, pieces_of
 from prunus.evaluate.correction import STAYS
 from prunus.evaluate.curves import SPACING, covered
+from prunus.geometry.pieces import matrix_of
 from prunus.model import Bools, Ints, Label, Skeleton
 
 ASIDE = math.radians(45)
@@ -172,7 +172,7 @@ def _paired(pairs: Ints, ours: int, theirs: int) -> Ints:
     """The partner (ours,) of each piece of ours when as many as can be have one; else -1."""
     if pairs.shape[1] == 0:
         return np.full(ours, NONE)
-    graph = csr_array((np.ones(pairs.shape[1]), (pairs[0], pairs[1])), (ours, theirs))
+    graph = matrix_of(pairs.T, np.ones(pairs.shape[1]), ours, theirs)
     return np.asarray(maximum_bipartite_matching(graph, perm_type="column"), dtype=np.int64)
 
 

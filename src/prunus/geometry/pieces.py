@@ -9,10 +9,16 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from prunus.model.arrays import Floats, Ints
 
 
+def matrix_of(edges: Ints, values: Floats, rows: int, columns: int | None = None) -> csr_array:
+    """The matrix (R, C) with a value at each pair of (E, 2); square without `columns`."""
+    # scipy's algorithms on graphs took indices of 32 bits alone, before 1.15
+    places = edges.T.astype(np.int32)
+    return csr_array((values, (places[0], places[1])), (rows, columns or rows))
+
+
 def components(nodes: int, edges: Ints) -> Ints:
     """The component (N,) of each node, named by its lowest node."""
-    ones = np.ones(len(edges))
-    matrix = csr_array((ones, (edges[:, 0], edges[:, 1])), shape=(nodes, nodes))
+    matrix = matrix_of(edges, np.ones(len(edges)), nodes)
     _, piece = connected_components(matrix, directed=False)
     _, lowest = np.unique(piece, return_index=True)
     return np.asarray(lowest[piece], np.int64)
@@ -23,5 +29,5 @@ def cheapest(nodes: int, edges: Ints, cost: Floats, source: int) -> Floats:
 
     `cost` (E,) >= 0 is that of undirected edges (E, 2), each pair of nodes joined once at most.
     """
-    matrix = csr_array((cost, (edges[:, 0], edges[:, 1])), shape=(nodes, nodes))
+    matrix = matrix_of(edges, cost, nodes)
     return np.asarray(dijkstra(matrix, directed=False, indices=source), np.float64)

@@ -16,6 +16,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from prunus.field.votes import Threads
+from prunus.geometry.pieces import matrix_of
 from prunus.model import Bools, Floats, Ints, Role
 
 NEAR_M = 0.04
@@ -64,23 +65,19 @@ class ThreadGraph:
         length, off = _off(self.threads, self.outward)
         gap = np.where(np.tile(self.gap, 2), LOOSE * length + GAP_SQUARED * length**2, 0.0)
         off = np.maximum(off - ASTRAY_LEAST, 0.0)
-        return csr_array(
-            (length * (NEARER + ELSEWHERE * off) + gap, tuple(self.outward.T)), shape=(size, size)
-        )
+        return matrix_of(self.outward, length * (NEARER + ELSEWHERE * off) + gap, size)
 
     def within(self, tree: Ints) -> csr_array:
         """The costs of growing (N, N) over edges that stay in one tree (N,)."""
         own = tree[self.outward[:, 0]] == tree[self.outward[:, 1]]
-        size = len(self.threads)
-        return csr_array((self.costs[own], tuple(self.outward[own].T)), shape=(size, size))
+        return matrix_of(self.outward[own], self.costs[own], len(self.threads))
 
     @cached_property
     def against(self) -> csr_array:
         """How far (N, N) each of `outward` goes against the flow of wood, metres; none is 1e-9."""
-        size = len(self.threads)
         length, off = _off(self.threads, self.outward)
         metres = length * np.maximum(off - WANDERS, 0.0) / 2 + 1e-9
-        return csr_array((metres, tuple(self.outward.T)), shape=(size, size))
+        return matrix_of(self.outward, metres, len(self.threads))
 
 
 def _off(threads: Threads, outward: Ints) -> tuple[Floats, Floats]:
@@ -121,8 +118,7 @@ def join_threads(threads: Threads) -> ThreadGraph:
 
 def pieces_of(size: int, edges: Ints) -> Ints:
     """The piece (N,) that each node is in."""
-    ones = np.ones(len(edges))
-    _, piece = connected_components(csr_array((ones, tuple(edges.T)), shape=(size, size)), False)
+    _, piece = connected_components(matrix_of(edges, np.ones(len(edges)), size), False)
     return np.asarray(piece, np.int64)
 
 
