@@ -16,6 +16,7 @@ def field_of(xyz, axis, role=Role.STEM):
         offset=axis - xyz,
         radius=np.full(len(xyz), 0.05),
         toward_foot=np.tile([0.0, 0.0, -1.0], (len(xyz), 1)),
+        foot=np.zeros((len(xyz), 2)),
     )
 
 

@@ -24,7 +24,10 @@ TEXTBOOK: list[Piece] = [
 
 
 def threads_of(pieces: list[Piece], seed: int | None = None) -> Threads:
-    """The threads of some pieces; with a seed every place is a few millimetres off."""
+    """The threads of some pieces; with a seed every place is a few millimetres off.
+
+    Every tree of several stands where its own stem does, or at the origin.
+    """
     xyz, role, radius, toward_foot = [], [], [], []
     for one, corners, thick in pieces:
         nodes, direction = _along(np.array(corners, np.float64))
@@ -44,9 +47,17 @@ def threads_of(pieces: list[Piece], seed: int | None = None) -> Threads:
         toward_foot=np.concatenate(toward_foot),
         votes=np.full(len(role), 5.0),
         scatter=np.zeros(len(role)),
+        foot=_feet_of(places, pieces),
         beyond=np.zeros((len(role), 2)),
         of_voxel=np.arange(len(role)),
     )
+
+
+def _feet_of(places: Floats, pieces: list[Piece]) -> Floats:
+    """Where the tree of each place stands (N, 2): the nearest of the stems along the row."""
+    stems = [corners[0][:2] for role, corners, _ in pieces if role == Role.STEM] or [(0.0, 0.0)]
+    nearest = np.abs(places[:, :1] - np.array(stems)[:, 0]).argmin(axis=1)
+    return np.array(stems)[nearest]
 
 
 def _along(corners: Floats) -> tuple[Floats, Floats]:

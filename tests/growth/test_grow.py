@@ -106,7 +106,8 @@ def test_a_turned_tree_grows_turned(angle: float) -> None:
     threads = threads_of(TEXTBOOK, 1)
     turn = turned(np.array([0, 0, np.radians(angle)]))
     toward_foot = threads.toward_foot @ turn.T
-    moved = replace(threads, xyz=threads.xyz @ turn.T, toward_foot=toward_foot)
+    foot = threads.foot @ turn[:2, :2].T
+    moved = replace(threads, xyz=threads.xyz @ turn.T, toward_foot=toward_foot, foot=foot)
     here = grow(threads).moved(RigidMotion(turn, np.zeros(3)))
     there = grow(moved)
     assert np.allclose(here.xyz, there.xyz, atol=1e-6)

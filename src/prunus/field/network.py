@@ -17,7 +17,7 @@ OFFSET_M = 0.03
 """An offset of 1 is so long."""
 RADIUS_M = 0.01
 """A log radius of 0 is this."""
-COLUMNS = {"role": len(Role), "offset": 3, "log_radius": 1, "toward_foot": 3}
+COLUMNS = {"role": len(Role), "offset": 3, "log_radius": 1, "toward_foot": 3, "to_foot": 2}
 """What the network tells of each voxel, side by side."""
 TABLES = [f"neighbours_{level}" for level in range(LEVELS)] + [
     f"{table}_{level}" for level in range(LEVELS - 1) for table in ("parent", "children")
@@ -48,9 +48,9 @@ def tables_of(voxels: Voxels) -> dict[str, Any]:
 
 
 def field_of(voxels: Voxels, outputs: Floats) -> PointField:
-    """The field of voxels of which the network told that (V, 13)."""
+    """The field of voxels of which the network told that (V, 15)."""
     ends = np.cumsum(list(COLUMNS.values()))[:-1]
-    logits, offset, log_radius, toward_foot = np.split(outputs, ends, axis=1)
+    logits, offset, log_radius, toward_foot, to_foot = np.split(outputs, ends, axis=1)
     chance = np.exp(logits - logits.max(axis=1, keepdims=True))
     length = np.linalg.norm(toward_foot, axis=1, keepdims=True)
     return PointField(
@@ -60,4 +60,5 @@ def field_of(voxels: Voxels, outputs: Floats) -> PointField:
         offset=OFFSET_M * offset,
         radius=RADIUS_M * np.exp(log_radius[:, 0]),
         toward_foot=toward_foot / np.maximum(length, 1e-9),
+        foot=voxels.xyz[:, :2] + to_foot,
     )

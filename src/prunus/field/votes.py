@@ -30,7 +30,8 @@ class PointField:
 
     xyz (V, 3), metres; count (V,) of points; role (V, 6), probabilities in the order of `Role`;
     offset (V, 3) to the axis of its branch, metres; radius (V,) of that, metres; toward_foot
-    (V, 3), the unit direction of that axis to the foot of the tree.
+    (V, 3), the unit direction of that axis to the foot of the tree; foot (V, 2), X and Y of where that
+    stands.
     """
 
     xyz: Floats
@@ -39,6 +40,7 @@ class PointField:
     offset: Floats
     radius: Floats
     toward_foot: Floats
+    foot: Floats
 
     def take(self, rows: Ints | Bools) -> PointField:
         """The field of these voxels only."""
@@ -49,6 +51,7 @@ class PointField:
             offset=self.offset[rows],
             radius=self.radius[rows],
             toward_foot=self.toward_foot[rows],
+            foot=self.foot[rows],
         )
 
 
@@ -58,7 +61,7 @@ class Threads:
 
     xyz (N, 3); role (N, 6), probabilities; radius (N,), metres; toward_foot (N, 3), unit; votes
     (N,), the root of the points of each voxel, summed; scatter (N,), how far its votes lie from
-    it, metres; beyond (N, 2), how far the voxels that voted for it lie outward of it and toward the
+    it, metres; foot (N, 2), X and Y of where their tree stands; beyond (N, 2), how far the voxels that voted for it lie outward of it and toward the
     foot, metres; of_voxel (V,), the node for which each voxel of the field voted, -1 = none.
     """
 
@@ -68,6 +71,7 @@ class Threads:
     toward_foot: Floats
     votes: Floats
     scatter: Floats
+    foot: Floats
     beyond: Floats
     of_voxel: Ints
 
@@ -108,6 +112,7 @@ def gather_votes(field: PointField) -> Threads:
         toward_foot=toward_foot,
         votes=np.asarray(total, np.float64),
         scatter=np.sqrt(scatter),
+        foot=mean(field.foot),
         beyond=beyond,
         of_voxel=of_voxel,
     )

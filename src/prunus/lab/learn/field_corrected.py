@@ -113,6 +113,7 @@ def drawn_truth(skeleton: Skeleton, cloud: PointCloud, marks: Marks) -> PointTru
         axis=np.where(near[:, None], axis, xyz),
         radius=np.where(near, radius, 0.0),
         toward_foot=np.where(near[:, None], -edges[row] / np.maximum(length, 1e-9), 0.0),
+        foot=np.where(near[:, None], tree.xyz[0], np.nan),
     )
 
 

@@ -52,6 +52,7 @@ class FieldExample:
             axis=self.truth.axis[rows],
             radius=self.truth.radius[rows],
             toward_foot=self.truth.toward_foot[rows],
+            foot=self.truth.foot[rows],
         )
         return FieldExample(xyz=self.xyz[rows], kind=self.kind[rows], truth=truth)
 
@@ -63,6 +64,7 @@ class FieldExample:
             "offset": (truth.axis - self.xyz).astype(np.float16),
             "radius": truth.radius.astype(np.float16),
             "toward_foot": truth.toward_foot.astype(np.float16),
+            "foot": truth.foot.astype(np.float32),
             "role": truth.role,
             "branch": truth.branch,
             "kind": self.kind,
@@ -79,6 +81,7 @@ class FieldExample:
             axis=held["xyz"] + held["offset"],
             radius=held["radius"],
             toward_foot=held["toward_foot"],
+            foot=held["foot"],
         )
         return cls(xyz=held["xyz"], kind=held["kind"], truth=truth)
 
@@ -101,6 +104,7 @@ class FieldExample:
             axis=scale * truth.axis @ motion.T,
             radius=scale * truth.radius,
             toward_foot=truth.toward_foot @ motion.T,
+            foot=scale * truth.foot @ motion.T,
         )
         return FieldExample(xyz=scale * self.xyz @ motion.T, kind=self.kind, truth=moved)
 
@@ -117,7 +121,8 @@ def _motion(rng: np.random.Generator) -> Floats:
 class Lesson:
     """Voxels with features (V, F), and what is true of the branch that most points of each are of.
 
-    role (V,), offset to the axis (V, 3), radius (V,), metres, and direction to the foot (V, 3).
+    role (V,), offset to the axis (V, 3), radius (V,), metres, direction to the foot (V, 3), and the way
+    to below or above that, in X and Y (V, 2), NaN where it is not known.
     """
 
     voxels: Voxels
@@ -126,6 +131,7 @@ class Lesson:
     offset: Floats
     radius: Floats
     toward_foot: Floats
+    to_foot: Floats
 
 
 def lesson_of(example: FieldExample, rng: np.random.Generator | None = None) -> Lesson:
@@ -150,6 +156,7 @@ def lesson_of(example: FieldExample, rng: np.random.Generator | None = None) -> 
         offset=mean(example.truth.axis) - voxels.xyz,
         radius=mean(example.truth.radius)[:, 0],
         toward_foot=mean(example.truth.toward_foot),
+        to_foot=(mean(example.truth.foot) - voxels.xyz)[:, :2],
     )
 
 

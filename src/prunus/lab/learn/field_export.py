@@ -29,7 +29,7 @@ class _Named(nn.Module):
         self.net = net
 
     def forward(self, features: Tensor, *tables: Tensor) -> Tensor:
-        """The outputs (V, 13)."""
+        """The outputs (V, 15)."""
         neighbours, rest = tables[:LEVELS], tables[LEVELS:]
         outputs: Tensor = self.net(features, Tables(neighbours, rest[::2], rest[1::2]))
         return outputs

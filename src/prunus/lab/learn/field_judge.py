@@ -17,7 +17,7 @@ from prunus.model import Floats, Ints, Role
 
 SEED = 0  # of the way in which each example is shown
 MOST = 90  # this percentile is told beside the median
-ERRORS = {"offset, mm": 1, "radius, %": 1, "direction, degrees": 0}
+ERRORS = {"offset, mm": 1, "radius, %": 1, "direction, degrees": 0, "foot, cm": 0}
 """The errors of a voxel of wood, and the digits with which each is told."""
 Figures = dict[str, Any]
 
@@ -43,7 +43,8 @@ class Seen:
         length = np.maximum(np.linalg.norm(true.toward_foot[rows], axis=1), 1e-9)
         cosine = (said.toward_foot[rows] * true.toward_foot[rows]).sum(axis=1) / length
         angle = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
-        found = (1000 * offset, 100 * radius, angle)
+        foot = np.linalg.norm(said.foot[rows] - true.voxels.xyz[rows, :2] - true.to_foot[rows], axis=1)
+        found = (1000 * offset, 100 * radius, angle, 100 * foot)
         return {name: one[np.isfinite(one)] for name, one in zip(ERRORS, found, strict=True)}
 
 

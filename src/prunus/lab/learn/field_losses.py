@@ -23,6 +23,7 @@ TITLES = {
     "offset": "offset to the axis: mean, in 3 cm",
     "log_radius": "radius: mean error of its logarithm",
     "toward_foot": "direction to the foot: 1 - cosine",
+    "to_foot": "way to the foot: mean error, m",
     "accuracy": "voxels whose role is right",
 }
 STYLE = """

@@ -119,7 +119,7 @@ class FieldNet(nn.Module):
         )
 
     def forward(self, features: Tensor, tables: Tables) -> Tensor:
-        """The outputs (V, 13)."""
+        """The outputs (V, 15)."""
         x = torch.relu(self.stem(self.enter(features), tables.neighbours[0]))
         passed = []
         for level, block in enumerate(self.down):

@@ -25,9 +25,9 @@ from prunus.model import Role
 from prunus.reading import read_bytes
 
 CLASS_WEIGHT = (1.5, 1.5, 1.0, 1.3, 1.3, 1.0)  # of the roles, in the order of `Role`
-LOSS_WEIGHT = {"role": 1.0, "offset": 0.7, "log_radius": 0.2, "toward_foot": 0.5}
+LOSS_WEIGHT = {"role": 1.0, "offset": 0.7, "log_radius": 0.2, "toward_foot": 0.5, "to_foot": 0.3}
 LEAST_RADIUS_M = 0.001
-FARTHEST = 4.0  # longer errors of an offset (in 3 cm) count no more
+FARTHEST = 4.0  # longer errors of an offset (in 3 cm), or of the way to the foot (in m), count no more
 WEIGHT_DECAY = 1e-3
 WARM_UP_STEPS, WARM_UP = 200, 0.1  # the learning rate rises over so many, or that share of all
 LAST_RATE = 0.01  # it ends at this share of its highest
@@ -45,13 +45,16 @@ class Batch:
     offset: Tensor
     log_radius: Tensor
     toward_foot: Tensor
+    to_foot: Tensor
 
     @classmethod
     def of(cls, lesson: Lesson, device: torch.device | None = None) -> Batch:
         """The batch of one lesson, on a device."""
         radius = np.maximum(lesson.radius, LEAST_RADIUS_M)
-        single = [lesson.offset / OFFSET_M, np.log(radius / RADIUS_M), lesson.toward_foot]
-        offset, log_radius, toward_foot = (
+        single = [
+            lesson.offset / OFFSET_M, np.log(radius / RADIUS_M), lesson.toward_foot, lesson.to_foot,
+        ]  # fmt: skip
+        offset, log_radius, toward_foot, to_foot = (
             torch.from_numpy(x.astype(np.float32)).to(device) for x in single
         )
         return cls(
@@ -61,6 +64,7 @@ class Batch:
             offset=offset,
             log_radius=log_radius,
             toward_foot=toward_foot,
+            to_foot=to_foot,
         )
 
 
@@ -70,16 +74,20 @@ def losses_of(outputs: Tensor, batch: Batch) -> dict[str, Tensor]:
     Where wood is of no known role, being taken for wood at all is what counts; where nobody knows
     whether there is wood, nothing does.
     """
-    logits, offset, log_radius, direction = torch.split(outputs, list(COLUMNS.values()), dim=1)
+    logits, offset, log_radius, direction, to_foot = torch.split(
+        outputs, list(COLUMNS.values()), dim=1
+    )
     known, any_wood = batch.role >= 0, batch.role == UNKNOWN_ROLE
     wood = (batch.role != Role.NO_WOOD) & (batch.role != UNTOLD)
     sized = wood & batch.log_radius.isfinite()
+    rooted = wood & batch.to_foot.isfinite().all(dim=1)
     weight = torch.tensor(CLASS_WEIGHT, device=logits.device)
     told = nn.functional.cross_entropy(logits[known], batch.role[known], weight, reduction="sum")
     chance = logits.log_softmax(dim=1)
     told = told - chance[any_wood, : Role.NO_WOOD].logsumexp(dim=1).sum()
     counted = weight[batch.role[known]].sum() + any_wood.sum()
     error = ((offset - batch.offset)[wood] ** 2).sum(dim=1)
+    astray = ((to_foot - batch.to_foot)[rooted] ** 2).sum(dim=1)
     unit = nn.functional.normalize(direction[wood], dim=1)
     truth = nn.functional.normalize(batch.toward_foot[wood], dim=1)
     right = (logits.argmax(dim=1) == batch.role)[known].float().mean()
@@ -89,6 +97,7 @@ def losses_of(outputs: Tensor, batch: Batch) -> dict[str, Tensor]:
         "log_radius": (log_radius[sized, 0] - batch.log_radius[sized]).abs().sum()
         / sized.sum().clamp(min=1),
         "toward_foot": (1 - (unit * truth).sum(dim=1)).mean(),
+        "to_foot": torch.sqrt(astray + 1e-2).clamp(max=FARTHEST).sum() / rooted.sum().clamp(min=1),
         "accuracy": right,
     }
 

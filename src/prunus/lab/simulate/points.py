@@ -28,8 +28,8 @@ class PointTruth:
     role (P,), `UNKNOWN_ROLE` where only its being wood is known, `UNTOLD` where not even that;
     branch (P,), counted over all trees, -1 = none, -2 = untold; axis (P, 3), the nearest point of
     the axis of its branch; radius (P,) there, metres, NaN where it is not known; toward_foot
-    (P, 3), the unit direction of that axis. Where there is no wood the axis is the point itself,
-    and the others are zero.
+    (P, 3), the unit direction of that axis; foot (P, 3), where its tree stands, NaN where that is not
+    known. Where there is no wood the axis is the point itself, and the others are zero.
     """
 
     role: Ints
@@ -37,6 +37,7 @@ class PointTruth:
     axis: Floats
     radius: Floats
     toward_foot: Floats
+    foot: Floats
 
 
 def point_truth(scan: Scan) -> PointTruth:
@@ -74,6 +75,7 @@ def _truth(xyz: Floats, whose: Ints, node: Ints, trees: list[Skeleton]) -> Point
     count = len(xyz)
     role, branch = np.full(count, int(Role.NO_WOOD)), np.full(count, -1)
     axis, radius, direction = xyz.copy(), np.zeros(count), np.zeros((count, 3))
+    foot = np.full((count, 3), np.nan)
     numbered = 0
     for number, tree in enumerate(trees):
         own = np.flatnonzero(whose == number)
@@ -83,8 +85,11 @@ def _truth(xyz: Floats, whose: Ints, node: Ints, trees: list[Skeleton]) -> Point
         axis[own] = on_axis(tree, row, xyz[own])
         radius[own] = tree.radius[row]
         direction[own] = -unit(tree.edge_vectors[row])
+        foot[own] = tree.xyz[0]
         numbered += owner.max(initial=-1) + 1
-    return PointTruth(role=role, branch=branch, axis=axis, radius=radius, toward_foot=direction)
+    return PointTruth(
+        role=role, branch=branch, axis=axis, radius=radius, toward_foot=direction, foot=foot
+    )
 
 
 def roles_of(tree: Skeleton) -> tuple[Ints, Ints]:
