@@ -138,7 +138,7 @@ def standing(threads: Threads, foot: Ints, feet: Ints) -> Floats:
     depth = own @ (points * threads.xyz[:, 1]) / np.maximum(wood, 1e-9)
     chance = MUCH * np.log1p(wood) - ASIDE * aside - FAR_ASIDE * aside**2
     chance -= BEHIND * depth + FOOT_BEHIND * threads.xyz[feet, 1]
-    return np.asarray(np.asarray(np.where(wood < SCRAP * wood.max(), chance - NOT_A_SCRAP, chance)))
+    return np.asarray(np.where(wood < SCRAP * wood.max(), chance - NOT_A_SCRAP, chance))
 
 
 def _lowest(graph: ThreadGraph) -> Ints:
