@@ -219,6 +219,7 @@ def test_edges_are_labelled_one_key_each(opened: Opened, tmp_path: Path) -> None
     for key, count in (("v", 1), ("x", 2), ("3", 3)):
         visit.page.keyboard.press(key)
         visit.reads(f"{count} of")
+        until(lambda: visit.desk.mode.queue.edge != asked[-1], "the next edge")
         asked.append(visit.desk.mode.queue.edge)
     assert len(set(asked)) == 4
     unsure = np.abs(visit.desk.mode.queue.graph.confidence[asked] - 0.5)
