@@ -70,3 +70,11 @@ def cells(picture: str) -> dict[tuple[int, int], str]:
         for x, letter in enumerate(text)
         if letter != " "
     }
+
+
+def clouds(seed: int, count: int) -> np.ndarray:
+    """Points on the model's grid, some of them in one place."""
+    rng = np.random.default_rng(seed)
+    points = np.rint(rng.uniform(-1, 1, (count, 3)) * 2**10) / 2**10
+    points[count // 2 :: 3] = points[0]
+    return points

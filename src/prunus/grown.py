@@ -139,8 +139,8 @@ def grow_tree(
     if at is None:
         place = cloud.words_for(skeleton.xyz[0])
         notes = [*notes, f"no base was given: the foot of the trunk was found at {place}"]
-    isolated_or_none = isolated if raw else None
-    return Grown(skeleton=skeleton, graph=graph, told=told, isolated=isolated_or_none, notes=notes)
+    left_out = isolated if raw else None
+    return Grown(skeleton=skeleton, graph=graph, told=told, isolated=left_out, notes=notes)
 
 
 def _by_nodes(tree: Skeleton) -> Skeleton:

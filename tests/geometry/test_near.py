@@ -6,14 +6,7 @@ from hypothesis import strategies as st
 
 from prunus.geometry.near import nearest, within
 from prunus.kernels import reference
-
-
-def clouds(seed: int, count: int) -> np.ndarray:
-    """Points on the model's grid, some of them in one place."""
-    rng = np.random.default_rng(seed)
-    points = np.rint(rng.uniform(-1, 1, (count, 3)) * 2**10) / 2**10
-    points[count // 2 :: 3] = points[0]
-    return points
+from tests.drawn import clouds
 
 
 @settings(deadline=None, max_examples=30)

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from prunus.growth.branches import Grown
-from prunus.growth.labels import CHANGES, FORK, TURN, chances, label_tree
+from prunus.growth.labels import CHANGES, FORK, TURN, label_tree
 from prunus.growth.parents import choose_parents
 from prunus.growth.shape import Tree
 from prunus.model import Floats, Ints, Label
+from prunus.model.role import label_chances
 from tests.growth.drawn import TEXTBOOK, threads_of
 
 
@@ -24,7 +25,7 @@ def random_tree(seed: int, rows: int) -> tuple[Tree, Floats]:
 
 def value(tree: Tree, roles: Floats, label: Ints) -> float:
     """What a labelled tree is worth, added up edge by edge; -inf where it is not allowed."""
-    worth = tree.step[:, None] * np.log(chances(roles) + 0.02)
+    worth = tree.step[:, None] * np.log(label_chances(roles) + 0.02)
     total = 0.0
     for row, below in enumerate(tree.children):
         same = []

@@ -8,6 +8,7 @@ of them, the densest first, stands for the rest.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -74,6 +75,11 @@ class Threads:
 
     def __len__(self) -> int:
         return len(self.xyz)
+
+    @cached_property
+    def tree(self) -> cKDTree:
+        """The nodes, to look for what is near."""
+        return cKDTree(self.xyz)
 
 
 def gather_votes(field: PointField) -> Threads:

@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from prunus.field.votes import Threads
 from prunus.growth.ways import NOWHERE, Ways
@@ -38,7 +37,6 @@ def cut_branches(threads: Threads, ways: Ways, foot: int) -> Grown:
     """The tree that grows from a foot."""
     cover = np.maximum(threads.radius, THIN_M) + COVER_M
     own = ways.foot == foot
-    tree = cKDTree(threads.xyz)
     covered, before = ~own, np.full(len(threads), NOWHERE)
     inside = np.zeros(len(threads), np.bool_)
     inside[foot] = True
@@ -54,7 +52,7 @@ def cut_branches(threads: Threads, ways: Ways, foot: int) -> Grown:
         path = _onto_host(threads.xyz, path, covered, inside)
         before[path[:-1]] = path[1:]
         inside[path] = True
-        for near in tree.query_ball_point(threads.xyz[path], cover[path]):
+        for near in threads.tree.query_ball_point(threads.xyz[path], cover[path]):
             covered[near] = True
     above = {int(node): int(before[node]) for node in np.flatnonzero(before != NOWHERE)}
     nodes, parent = parents_first(foot, above)

@@ -7,7 +7,8 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from prunus.field.votes import Threads
-from prunus.growth.graph import ThreadGraph, pieces_of
+from prunus.geometry.pieces import components
+from prunus.growth.graph import ThreadGraph
 from prunus.model import Floats, Ints, Role
 
 LEAST_STEM = 0.4
@@ -41,8 +42,8 @@ def find_feet(graph: ThreadGraph, given: int | None = None) -> Ints:
     """
     threads = graph.threads
     stem = np.flatnonzero(threads.role[:, Role.STEM] >= LEAST_STEM)
-    piece = pieces_of(len(stem), _pairs(threads.xyz[stem], STEM_APART_M))
-    found = [_low_end(threads, stem[piece == one]) for one in range(piece.max(initial=-1) + 1)]
+    piece = components(len(stem), _pairs(threads.xyz[stem], STEM_APART_M))
+    found = [_low_end(threads, stem[piece == one]) for one in np.unique(piece)]
     ends = [(-mass, node) for node, mass, length in found if length >= LEAST_STEM_M]
     feet = [node for _, node in sorted(ends)]
     limit = [STEM_AGAINST_M] * len(feet)
@@ -146,11 +147,11 @@ def _lowest(graph: ThreadGraph) -> Ints:
     threads = graph.threads
     if len(threads) == 0:
         return np.zeros(0, np.int64)
-    piece = pieces_of(len(threads), graph.edges)
+    piece = components(len(threads), graph.edges)
     largest = np.flatnonzero(piece == np.bincount(piece, threads.votes).argmax())
     return largest[[threads.xyz[largest, 2].argmin()]]
 
 
 def nearest_foot(threads: Threads, base: Floats) -> int:
     """The node nearest to a base (3,) that was given."""
-    return int(cKDTree(threads.xyz).query(base)[1])
+    return int(threads.tree.query(base)[1])

@@ -12,11 +12,10 @@ from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from prunus.field.votes import Threads
-from prunus.geometry.pieces import matrix_of
+from prunus.geometry.pieces import components, matrix_of
 from prunus.model import Bools, Floats, Ints, Role
 
 NEAR_M = 0.04
@@ -106,30 +105,25 @@ def confidence_of(threads: Threads, outward: Ints) -> Floats:
 
 def join_threads(threads: Threads) -> ThreadGraph:
     """The graph of some threads."""
-    tree = cKDTree(threads.xyz)
-    near = tree.query_pairs(NEAR_M, output_type="ndarray").astype(np.int64)
+    near = threads.tree.query_pairs(NEAR_M, output_type="ndarray").astype(np.int64)
     edges = near
     for reach in GAPS_M:
-        edges = np.concatenate([edges, _bridges(threads, tree, edges, reach)])
+        edges = np.concatenate([edges, _bridges(threads, edges, reach)])
     gap = np.arange(len(edges)) >= len(near)
     order = np.lexsort(edges.T[::-1])
     return ThreadGraph(threads=threads, edges=edges[order], gap=gap[order])
 
 
-def pieces_of(size: int, edges: Ints) -> Ints:
-    """The piece (N,) that each node is in."""
-    _, piece = connected_components(matrix_of(edges, np.ones(len(edges)), size), False)
-    return np.asarray(piece, np.int64)
-
-
-def _bridges(threads: Threads, tree: cKDTree, edges: Ints, reach: float) -> Ints:
+def _bridges(threads: Threads, edges: Ints, reach: float) -> Ints:
     """The cheapest bridges (B, 2) between pieces that lie within reach of each other."""
-    piece = pieces_of(len(threads), edges)
+    piece = components(len(threads), edges)
     loose = piece != np.bincount(piece).argmax()  # from the largest it is the way back
     some = np.flatnonzero(loose)
     if len(some) == 0:
         return np.zeros((0, 2), np.int64)
-    found = cKDTree(threads.xyz[some]).sparse_distance_matrix(tree, reach, output_type="ndarray")
+    found = cKDTree(threads.xyz[some]).sparse_distance_matrix(
+        threads.tree, reach, output_type="ndarray"
+    )
     pairs = np.column_stack([some[found["i"]], found["j"]])
     once = ~loose[pairs[:, 1]] | (pairs[:, 0] < pairs[:, 1])
     pairs = pairs[once & (piece[pairs[:, 0]] != piece[pairs[:, 1]])]

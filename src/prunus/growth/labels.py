@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from prunus.growth.shape import FORKS, Tree
-from prunus.model import Bools, Floats, Ints, Label, Role
+from prunus.model import Bools, Floats, Ints, Label
+from prunus.model.role import label_chances
 
 LEAST = 0.02
 """A probability is never taken for less: one voxel does not forbid a label."""
@@ -69,15 +70,8 @@ def label_tree(tree: Tree, roles: Floats) -> Labelled:
     return Labelled(label=label, best=best, other=other, value=value)
 
 
-def chances(roles: Floats) -> Floats:
-    """The probability (M, 4) of each label, of roles (M, 6); a spur counts as side branch."""
-    chance = roles[:, : len(Label)].copy()
-    chance[:, Label.SIDE_BRANCH] += roles[:, Role.SPUR_OR_SHOOT]
-    return np.asarray(chance / np.maximum(chance.sum(axis=1, keepdims=True), 1e-9))
-
-
 def _worth(roles: Floats, step: Floats) -> Floats:
-    return np.asarray(step[:, None] * np.log(chances(roles) + LEAST))
+    return np.asarray(step[:, None] * np.log(label_chances(roles) + LEAST))
 
 
 def _above(tree: Tree, best: Floats, other: Floats, goes_on: Bools, rows: Ints) -> Floats:

@@ -120,7 +120,7 @@ def _leaves_wood(threads: Threads, start: Floats, end: Floats) -> Bools:
     """Whether straight ways (B,) from some places (B, 3) to others go through the open."""
     far = np.flatnonzero(np.linalg.norm(end - start, axis=1) > NEAR_M)
     share = np.linspace(0, 1, BETWEEN + 2)[1:-1, None, None]
-    away, node = cKDTree(threads.xyz).query(start[far] + share * (end - start)[far])
+    away, node = threads.tree.query(start[far] + share * (end - start)[far])
     cover = np.maximum(threads.radius, THIN_M) + COVER_M
     leaves = np.zeros(len(start), np.bool_)
     leaves[far] = (away > cover[node]).any(axis=0)

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from prunus.model import Floats
+from prunus.model.arrays import cubes
 
 REACH_M = 0.10
 """Around a point so much is looked at."""
@@ -22,7 +23,7 @@ def linear_of(xyz: Floats) -> float:
     place has enough points.
     """
     xyz = xyz[:: max(1, len(xyz) // POINTS)]
-    _, first = np.unique(np.floor(xyz / REACH_M).astype(np.int64), axis=0, return_index=True)
+    _, first = np.unique(cubes(xyz, REACH_M), return_index=True)
     some = first[:: max(1, len(first) // PLACES)]
     near = [
         rows for rows in cKDTree(xyz).query_ball_point(xyz[some], REACH_M) if len(rows) >= FEWEST

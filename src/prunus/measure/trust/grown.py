@@ -10,7 +10,8 @@ from scipy.spatial import cKDTree
 
 from prunus.measure.branches import Branch, branch_of_rows, branches
 from prunus.measure.trust.evidence import LEAST, MOST, TINY, Evidence
-from prunus.model import Bools, Floats, Ints, Label, Role, Skeleton, Told
+from prunus.model import Bools, Floats, Ints, Role, Skeleton, Told
+from prunus.model.role import label_chances
 
 THIN_M = 0.001
 """No branch is thinner."""
@@ -42,7 +43,7 @@ def of_branches(known: KnownGrown, form: float) -> list[Evidence]:
     skeleton = known.skeleton
     found = branches(skeleton)
     owner = branch_of_rows(found, len(skeleton))
-    chance, beside = _log(chances(known.told.role)), _beside(skeleton, owner)
+    chance, beside = _log(label_chances(known.told.role)), _beside(skeleton, owner)
     way = _least_on_the_way(skeleton)
     return [_of_branch(known, branch, chance, beside, way) | {"form": form} for branch in found]
 
@@ -91,7 +92,7 @@ def of_edges(known: KnownGrown, branch_trust: Floats, form: float) -> list[Evide
     row = np.arange(1, len(skeleton))
     table = np.column_stack([
         _log(skeleton.confidence[row]),
-        _log(chances(known.told.role)[row, skeleton.label[row]]),
+        _log(label_chances(known.told.role)[row, skeleton.label[row]]),
         odds[owner[row]], whole[owner[row]], beside[row], np.full(len(row), form),
     ])  # fmt: skip
     names = ("edge", "kind", "branch", "whole", "beside", "form")
@@ -107,7 +108,7 @@ def of_tree(known: KnownGrown) -> Evidence:
     """
     skeleton, row = known.skeleton, np.arange(1, len(known.skeleton))
     weight = skeleton.lengths[1:] + TINY
-    kind = _log(chances(known.told.role)[row, skeleton.label[row]])
+    kind = _log(label_chances(known.told.role)[row, skeleton.label[row]])
     return {
         **known.told.whole,
         "sure": float(np.average(skeleton.confidence[1:], weights=weight)),
@@ -115,13 +116,6 @@ def of_tree(known: KnownGrown) -> Evidence:
         "frame": float(np.average(known.told.role[1:, Role.FRAMEWORK], weights=weight)),
         "fruit": float(np.average(known.told.role[1:, Role.FRUITING_UNIT], weights=weight)),
     }
-
-
-def chances(role: Floats) -> Floats:
-    """The probability (M, 4) of each label, of roles (M, 6); a spur counts as side branch."""
-    chance = role[:, : len(Label)].copy()
-    chance[:, Label.SIDE_BRANCH] += role[:, Role.SPUR_OR_SHOOT]
-    return np.asarray(chance / np.maximum(chance.sum(axis=1, keepdims=True), TINY))
 
 
 def _beside(skeleton: Skeleton, owner: Ints) -> Bools:
