@@ -1,6 +1,7 @@
 """The chain that votes and grows: a cloud in, the tree at which the scanner looks and its evidence.
 
-Voxels, the point field, votes for the axes of branches, growth from the feet of all trees in view.
+Voxels, the point field without wires, votes for the axes of branches, growth from the feet of all
+trees in view.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from prunus.errors import NoTreeError, PrunusError
 from prunus.field.network import see_field
 from prunus.field.votes import PointField, Threads, gather_votes
 from prunus.field.voxels import Voxels, voxels_of
+from prunus.field.wires import without_wires
 from prunus.growth.evidence import seeded_graph
 from prunus.growth.grow import Orchard
 from prunus.growth.told import told_of
@@ -62,7 +64,7 @@ class View:
             even = cloud.evened(rng) if params.input.draw == "space" else cloud
             drawn = even.sample(params.input.count, rng)
             voxels = voxels_of(drawn.xyz)
-            field = see_field(voxels)
+            field = without_wires(see_field(voxels), rng)
         with timed(seconds, "votes"):
             threads = gather_votes(field)
         if len(threads) == 0:
