@@ -32,15 +32,15 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return home
 
 
-"""A ball is taken for a tree until then."""
-
-
 @pytest.mark.parametrize(
     ("words", "says"),
     [
         pytest.param("skeletonize ball.npy --frame z-up -o out", "no tree was found"),
         ("skeletonize tree.npy --frame z-up --base 9 9 9 -o out", "m from the nearest wood"),
         pytest.param("cuts ball.npy --frame z-up", "no tree was found"),
+        ("skeletonize tree.npy --frame y-up -o out", "it seems to lie on its side"),
+        ("skeletonize tree.npy --frame x-down -o out", "--frame z-up"),
+        ("cuts tree.npy --frame optical", "it seems to lie on its side"),
         ("cuts alone.json", "holds a base alone; expected a tree to cut"),
         pytest.param(
             "isolate ball.npy --frame z-up --list",

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from prunus.errors import NoTreeError
-from prunus.model import Floats, PointCloud, Skeleton
+from prunus.model import FRAMES, Floats, PointCloud, Skeleton
 from prunus.params import Parameters
 from prunus.pipeline import follow, skeletonize
 from prunus.plausible import Evidence
@@ -121,7 +122,7 @@ GOOD = Evidence(length=9.0, across=0.3, explained=0.9, linear=0.7, rise=0.8)
         ({"explained": 0.4, "trust": 0.65}, "60% of the points are not .* 65% of its edges"),
     ],
 )
-def test_each_evidence_alone_is_enough(change: dict[str, float], reason: str) -> None:
+def test_each_evidence_alone_is_enough(change: dict[str, Any], reason: str) -> None:
     GOOD.check()
     with pytest.raises(NoTreeError, match=reason):
         replace(GOOD, **change).check()
@@ -136,7 +137,7 @@ def test_each_evidence_alone_is_enough(change: dict[str, float], reason: str) ->
         ({"rise": 0.2}, "hardly rise"),
     ],
 )
-def test_what_is_only_odd_is_a_doubt(change: dict[str, float], says: str) -> None:
+def test_what_is_only_odd_is_a_doubt(change: dict[str, Any], says: str) -> None:
     odd = replace(GOOD, **change)
     odd.check()
     assert says in " ".join(odd.doubts())
@@ -146,3 +147,20 @@ def test_where_much_was_taken_away_the_message_says_so(monkeypatch: pytest.Monke
     monkeypatch.setattr("prunus.plausible.LEAST_EXPLAINED", 1.0)
     with pytest.raises(NoTreeError, match=r"% of the scan was left out .*--no-isolate"):
         skeletonize(field_scan(4).xyz)
+
+
+LYING = [name for name, turn in FRAMES.items() if turn[2, 2] < 0.5]
+"""The frames in which another axis than Z is up."""
+
+
+@pytest.mark.parametrize("frame", LYING)
+def test_a_tree_in_another_frame_than_was_said_is_refused_and_its_own_is_named(frame: str) -> None:
+    with pytest.raises(NoTreeError) as told:
+        skeletonize(tree_points() @ FRAMES[frame])
+    up = FRAMES[frame][2]
+    named = [name for name in FRAMES if f"--frame {name}" in str(told.value)]
+    assert any(np.allclose(FRAMES[name][2], up) for name in named), str(told.value)
+
+
+def test_a_tree_that_stands_does_not_lie() -> None:
+    assert not Evidence.of(follow(PointCloud.from_xyz(tree_points()))).lies

@@ -11,7 +11,7 @@ from prunus.errors import NoTreeError
 from prunus.geometry.near import within
 from prunus.model import FRAMES, Floats, PointCloud
 from prunus.model.steps import step_of
-from prunus.sensing.orient import local_wood
+from prunus.sensing.orient import Up, local_wood
 from prunus.sensing.patches import Cells
 from prunus.sensing.stance import seems
 
@@ -50,8 +50,12 @@ def explaining(cloud: PointCloud) -> Iterator[None]:
 
 def why_no_tree(cloud: PointCloud) -> str:
     """What is wrong with a cloud in which no tree was found, and what to try."""
-    xyz = cloud.xyz[:: max(1, len(cloud) // LOOKED_AT)]
+    xyz = _some(cloud)
     return next((why for look in LOOKS if (why := look(cloud, xyz))), TRY)
+
+
+def _some(cloud: PointCloud) -> Floats:
+    return cloud.xyz[:: max(1, len(cloud) // LOOKED_AT)]
 
 
 def _small(cloud: PointCloud, xyz: Floats) -> str:
@@ -93,12 +97,22 @@ def _large(cloud: PointCloud, xyz: Floats) -> str:
     return f"the cloud measures {_metres(size)}: is the unit right (--unit)? {TRY}"
 
 
+def is_lying(cloud: PointCloud) -> bool:
+    """Whether all evidence in a cloud is for another axis than Z as the one that is up."""
+    up = seems(cloud.to_input.apply(_some(cloud)))
+    return not up.others and not _upward(cloud, up)
+
+
 def _lying(cloud: PointCloud, xyz: Floats) -> str:
     """In the frame of the file, whose name is what can be said otherwise."""
     up = seems(cloud.to_input.apply(xyz))
-    if cloud.to_input.rotation[:, 2] @ FRAMES[up.frame][2] > UPRIGHT:
+    if _upward(cloud, up):
         return ""
     return f"it seems to lie on its side, as {up.why}: try --frame {up.frame}"
+
+
+def _upward(cloud: PointCloud, up: Up) -> bool:
+    return bool(cloud.to_input.rotation[:, 2] @ FRAMES[up.frame][2] > UPRIGHT)
 
 
 def _no_branches(cloud: PointCloud, xyz: Floats) -> str:
