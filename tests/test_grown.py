@@ -107,7 +107,6 @@ def test_each_parameter_that_is_shown_changes_some_result() -> None:
     ]
     other = {
         ("input", "points"): 20_000,
-        ("input", "draw"): "space",
         ("isolation", "isolate"): "never",
         ("isolation", "raw_from"): 0.95,
     }

@@ -41,6 +41,7 @@ SAME_FLOOR = {
     ("stages", "measure"),
     ("sensing", "stages"),
     ("growth", "field"),
+    ("searched", "grown"),
 }
 """Neighbours on one floor that may be used. No side room knows another."""
 

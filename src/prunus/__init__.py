@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from prunus.schemas import schema as schema
     from prunus.stages.confidence import EdgeScorer as EdgeScorer
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOME = {
     "EdgeScorer": "prunus.stages.confidence",

@@ -26,9 +26,6 @@ from prunus.params import Parameters, checked_params, checked_seed
 from prunus.search import search
 from prunus.stages.seeds import find_tips
 
-SEARCH = Parameters.paper().changed("search", refine=True)
-"""The paper's search, and the best skeleton improved one edge at a time."""
-
 
 @dataclass(frozen=True, eq=False)
 class GraphSkeleton:
@@ -60,7 +57,7 @@ def search_graph(
 
     nodes (N, 3) metres, Z up, X along the row; edges (E, 2) undirected pairs of nodes; confidence
     (E,) in [0, 1]; base and tips (T,) node indices, tips found as in the paper when None. params:
-    those of the paper's method; None: as in the paper, and then refined.
+    those of the paper's method, which None is.
     Raises PrunusError naming the argument, what was found and what was expected, or where nothing
     can be grown from the base.
     """
@@ -96,13 +93,10 @@ def search_graph(
 
 
 def _of_search(params: Any) -> Any:
-    """Parameters that a caller gave; what nested dicts do not name is as in `SEARCH`."""
+    """Parameters that a caller gave; of nested dicts the method is the paper's."""
     if params is None:
-        return SEARCH
-    if not isinstance(params, Mapping) or not isinstance(params.get("search", {}), Mapping):
-        return params
-    search = {"refine": True, **params.get("search", {})}
-    return {"method": "paper", **params, "search": search}
+        return Parameters.paper()
+    return {"method": "paper", **params} if isinstance(params, Mapping) else params
 
 
 def _checked_graph(

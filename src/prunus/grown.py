@@ -61,8 +61,7 @@ class View:
         NoTreeError where nothing is wood; PrunusError where the base is far from any.
         """
         with timed(seconds, "field"):
-            even = cloud.evened(rng) if params.input.draw == "space" else cloud
-            drawn = even.sample(params.input.count, rng)
+            drawn = cloud.sample(params.input.count, rng)
             voxels = voxels_of(drawn.xyz)
             field = without_wires(see_field(voxels), rng)
         with timed(seconds, "votes"):
@@ -78,7 +77,7 @@ class View:
 
     def isolated(self, tree: Skeleton) -> Isolated:
         """What each point of the cloud is to a tree."""
-        return Isolated(self._kinds(int(tree.superpoint[0])), tree.xyz[0], tree.xyz[0])
+        return Isolated(self._kinds(int(tree.superpoint[0])), tree.xyz[0])
 
     def tree(self) -> Skeleton:
         """The tree that is meant."""
@@ -133,16 +132,36 @@ def grow_tree(
         skeleton = view.tree()
         told = told_of(skeleton, view.orchard, view.field, given=at is not None)
     with timed(seconds, "isolate"):
-        isolated = view.isolated(skeleton)
-        raw = isolated.removed >= params.isolation.raw_from
-        raw = {"auto": raw, "always": True, "never": False}[params.isolation.isolate]
-        graph = view.graph(skeleton, alone=raw)
-    notes = [*view.notes, isolated.told()] if raw else view.notes
+        isolated = _asked_for(view.isolated(skeleton), params)
+        graph = view.graph(skeleton, alone=isolated is not None)
+    notes = view.notes if isolated is None else [*view.notes, isolated.told()]
     if at is None:
         place = cloud.words_for(skeleton.xyz[0])
         notes = [*notes, f"no base was given: the foot of the trunk was found at {place}"]
-    left_out = isolated if raw else None
-    return Grown(skeleton=skeleton, graph=graph, told=told, isolated=left_out, notes=notes)
+    return Grown(skeleton=skeleton, graph=graph, told=told, isolated=isolated, notes=notes)
+
+
+def isolated_tree(
+    cloud: PointCloud,
+    at: Floats | None,
+    params: Parameters,
+    rng: np.random.Generator,
+    seconds: Seconds,
+) -> Isolated | None:
+    """What each point of a scan is to the tree that is meant; None where nothing is to be left out.
+
+    Errors are those of `grow_tree`.
+    """
+    view = View.of(cloud, at, params, rng, seconds)
+    with timed(seconds, "isolate"):
+        return _asked_for(view.isolated(view.tree()), params)
+
+
+def _asked_for(isolated: Isolated, params: Parameters) -> Isolated | None:
+    """What was isolated, where the scan is raw enough for what is asked."""
+    raw = isolated.removed >= params.isolation.raw_from
+    wanted = {"auto": raw, "always": True, "never": False}[params.isolation.isolate]
+    return isolated if wanted else None
 
 
 def _by_nodes(tree: Skeleton) -> Skeleton:

@@ -12,7 +12,7 @@ import numpy as np
 
 from prunus.measure import branches
 from prunus.measure.refine import Refined, refined
-from prunus.measure.trust import Known, KnownGrown, Trust, trust_in, trust_in_grown
+from prunus.measure.trust import Known, Trust, trust_in
 from prunus.measure.trust.review import review_of
 from prunus.model import Floats, Label, PointCloud, SeededGraph, Skeleton, Told
 from prunus.params import Parameters
@@ -87,31 +87,13 @@ class Result:
 
     @cached_property
     def trust(self) -> Trust | None:
-        """How far to trust it; None where the paper's score found it."""
-        if len(self.in_house) == 1:
+        """How far to trust it; None where it did not grow on votes."""
+        if len(self.in_house) == 1 or self.told is None:
             return None
-        if self.told is not None:
-            return trust_in_grown(KnownGrown(self.in_house, self.told))
-        if self.params.method != "learned":
-            return None
-        # Here, since it takes a compiler.
-        from prunus.search import goes_by_learned_score, shipped_score
-        from prunus.search.judged import judged
-
-        if not goes_by_learned_score(self.graph, self.params):
-            return None
-        told = judged(self.in_house, self.graph, shipped_score())
-        raw = self.isolated is not None
-        return trust_in(Known(self.in_house, self.refined, told.gain, told.likely, raw))
+        return trust_in(Known(self.in_house, self.told))
 
     @cached_property
     def review(self) -> list[str]:
         """Why a person should look at the tree before a machine acts on it; empty: no need."""
         doubts = [] if self.trust is None else review_of(self.in_house, self.trust)
-        return [*self._other_tree(), *self.warnings, *doubts]
-
-    def _other_tree(self) -> list[str]:
-        rival = None if self.isolated is None else self.isolated.rival
-        if rival is None:
-            return []
-        return [f"the tree that stands at {self.scan.words_for(rival)} could be meant as well"]
+        return [*self.warnings, *doubts]

@@ -42,7 +42,7 @@ def test_the_base_of_another_tree_gives_that_tree() -> None:
     view = View.of(at.scan, None, at.params, np.random.default_rng(0), {})
     trees = [view.isolated(view.orchard.tree_at(foot)) for foot in view.orchard.feet.tolist()]
     others = [t for t in trees if np.linalg.norm(t.foot - at.draft.places[at.draft.base]) > 0.5]
-    base = max(others, key=lambda tree: tree.target.sum()).base
+    base = max(others, key=lambda tree: tree.target.sum()).foot
     after = apply(apply(at, PickBase(outside(at, base))), Rebuild())
     there = after.draft.places[after.draft.base]
     assert np.linalg.norm(there - base) < 0.3

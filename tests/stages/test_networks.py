@@ -12,12 +12,9 @@ from prunus.model import CandidateGraph, PointCloud, Superpoints
 from prunus.params import Parameters
 from prunus.stages.candidates import find_candidates
 from prunus.stages.confidence import score_edges
-from prunus.stages.context import MET, context_of, edges_met
 from prunus.stages.networks import NetworkScorer
 from prunus.stages.superpoints import find_superpoints
 from tests.conftest import field_scan
-
-NETS = ["ours", "paper"]
 
 
 @cache
@@ -26,64 +23,45 @@ def graph(shift: tuple[float, ...] = (0.0, 0.0, 0.0), turn: float = 1.0) -> Cand
     xyz = points.to_input.apply(points.xyz) * [turn, turn, 1.0] + np.array(shift)
     rng = np.random.default_rng(0)
     cloud = PointCloud.from_xyz(xyz).sample(15_000, rng)
-    return find_candidates(find_superpoints(cloud, Parameters.learned().superpoints, rng))
+    return find_candidates(find_superpoints(cloud, Parameters.paper().superpoints, rng))
 
 
 def swapped(candidates: CandidateGraph) -> CandidateGraph:
     return CandidateGraph(candidates.superpoints, candidates.edges[:, ::-1])
 
 
-@pytest.mark.parametrize("net", NETS)
-def test_scores_lie_between_0_and_1_and_tell_edges_apart(net: str) -> None:
-    confidence, category = NetworkScorer.shipped(net).judge(graph())
+def test_scores_lie_between_0_and_1_and_tell_edges_apart() -> None:
+    confidence, category = NetworkScorer().judge(graph())
     assert confidence.shape == (len(graph().edges),)
     assert 0 <= confidence.min() < 0.1 and 0.9 < confidence.max() <= 1
     assert category.sum(axis=1) == pytest.approx(1, abs=1e-5)
 
 
-@pytest.mark.parametrize("net", NETS)
-def test_moving_or_half_turning_the_cloud_does_not_change_the_score(net: str) -> None:
-    scorer = NetworkScorer.shipped(net)
+def test_moving_or_half_turning_the_cloud_does_not_change_the_score() -> None:
+    scorer = NetworkScorer()
     still = scorer(graph())
     assert np.array_equal(scorer(graph(shift=(612_345.0, 5_123_456.0, 321.0))), still)
     assert np.array_equal(scorer(graph(turn=-1.0)), still)
 
 
-@pytest.mark.parametrize("net", NETS)
-def test_swapping_the_ends_does_not_change_the_score(net: str) -> None:
-    scorer = NetworkScorer.shipped(net)
+def test_swapping_the_ends_does_not_change_the_score() -> None:
+    scorer = NetworkScorer()
     assert np.abs(scorer(swapped(graph())) - scorer(graph())).max() < 0.02
 
 
 def test_a_graph_without_edges_gets_no_scores() -> None:
     lone = Superpoints.of_nodes(PointCloud.from_xyz([[0.0, 0, 0]]), 0.1)
     empty = CandidateGraph(lone, np.zeros((0, 2), np.int64))
-    assert NetworkScorer.shipped("ours")(empty).shape == (0,)
+    assert NetworkScorer()(empty).shape == (0,)
 
 
 def test_a_graph_brought_from_elsewhere_can_be_scored() -> None:
     nodes = Superpoints.of_nodes(PointCloud.from_xyz(np.eye(3) * 0.1), 0.1)
     two = CandidateGraph(nodes, np.array([[0, 1], [1, 2]]))
-    for net in NETS:
-        assert np.isfinite(NetworkScorer.shipped(net)(two)).all()
+    assert np.isfinite(NetworkScorer()(two)).all()
 
 
-def test_each_edge_meets_the_edges_that_share_an_end() -> None:
-    met = edges_met(np.array([[0, 1], [1, 2], [1, 3]]), 4)
-    assert [sorted(row[row >= 0].tolist()) for row in met] == [[1, 2], [0, 2], [0, 1]]
-
-
-def test_the_edge_that_goes_straight_on_comes_first() -> None:
-    xyz = np.array([[0, 0, 0], [0, 0, 0.1], [0, 0, 0.2], [0.1, 0, 0.1]])
-    nodes = Superpoints.of_nodes(PointCloud.from_xyz(xyz), 0.1)
-    context = context_of(CandidateGraph(nodes, np.array([[0, 1], [1, 2], [1, 3]])))
-    assert context.met.shape == (3, 2 * MET)
-    assert context.met[0, MET : MET + 2].tolist() == [1, 2]
-    assert context.meeting[0, MET : MET + 2, 0] == pytest.approx([1.0, 0.0], abs=1e-6)
-    assert (context.meeting[context.met < 0] == 0).all()
-
-
-SHIPPED = NetworkScorer.shipped("ours").path
+SHIPPED = NetworkScorer().path
 
 
 def other_network(inputs: dict[str, tuple[int, list[object]]], outputs: list[str]) -> bytes:
@@ -111,7 +89,7 @@ OTHERS = {
     "json": (lambda: b'{"K": 1}', "not an ONNX file"),
     "cut off": (lambda: SHIPPED.read_bytes()[:-2000], "not an ONNX file"),
     "half": (lambda: SHIPPED.read_bytes()[: len(SHIPPED.read_bytes()) // 2], "not an ONNX file"),
-    "of isolation": (SHIPPED.with_name("isolate.onnx").read_bytes, "a network from .*'near'"),
+    "of points": (SHIPPED.with_name("field.onnx").read_bytes, "a network from "),
     "of pictures": (
         lambda: other_network({"input": (1, [1, 3, 8, 8])}, ["logits"]),
         r"a network from \['input'\] to \['logits'\]; expected one that `prunus train` made",
@@ -157,4 +135,4 @@ def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
 
 def test_own_weights_may_be_named_by_text() -> None:
     scorer = NetworkScorer(str(SHIPPED))
-    assert np.array_equal(scorer(graph()), NetworkScorer.shipped("ours")(graph()))
+    assert np.array_equal(scorer(graph()), NetworkScorer()(graph()))

@@ -49,7 +49,7 @@ def test_no_foot_is_taken_from_afar_or_under_thin_wood(away: tuple[float, ...]) 
     base = at(scored, FAR + away)
     assert out_of_weeds(scored, base) == (base, [])
     with pytest.raises(PrunusError, match="m from the nearest part of the tree"):
-        find_seeds(scored, Parameters.learned(), base)
+        find_seeds(scored, Parameters.paper(), base)
 
 
 @pytest.mark.parametrize("frame", ["z-up", "optical"])

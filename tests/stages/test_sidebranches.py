@@ -1,4 +1,4 @@
-"""Side branches and stubs, on drawn graphs."""
+"""Side branches, on drawn graphs."""
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from prunus.model import (
 from prunus.params import Parameters
 from prunus.rules import offenders
 from prunus.stages.sidebranches import find_side_branches
-from prunus.stages.stubs import drop_stubs
 from tests.drawn import LABELS, STEP, cells, tree
 
 
@@ -48,7 +47,7 @@ def drawn_graph(picture: str) -> tuple[SeededGraph, Skeleton]:
 def found(picture: str) -> int:
     """How many side-branch edges are found in a drawing."""
     graph, skeleton = drawn_graph(picture)
-    grown = find_side_branches(skeleton, graph, Parameters.learned())
+    grown = find_side_branches(skeleton, graph, Parameters.paper())
     assert offenders(grown) == {}
     return int(grown.edges_with(Label.SIDE_BRANCH).sum())
 
@@ -67,17 +66,10 @@ def test_one_that_leaves_the_support_is_none() -> None:
 
 def test_a_piece_that_also_touches_the_support_is_none_as_in_the_paper() -> None:
     graph, skeleton = drawn_graph("l   \nlxxx\nl  x\nssss\nt   \no   ")
-    paper = Parameters.learned().changed("side_branches", several=False)
-    added = find_side_branches(skeleton, graph, paper).edges_with(Label.SIDE_BRANCH).sum()
+    added = (
+        find_side_branches(skeleton, graph, Parameters.paper()).edges_with(Label.SIDE_BRANCH).sum()
+    )
     assert added == 0
-
-
-def test_beyond_the_paper_it_loses_only_the_superpoints_that_touch() -> None:
-    assert found("l   \nlxxx\nl  x\nl  x\nssss\nt   \no   ") == 4
-
-
-def test_beyond_the_paper_a_piece_may_hold_several_branches() -> None:
-    assert found("lbbb\nlb  \nlbbb\nl   \ns   \nt   \no   ") > 4
 
 
 def test_each_loose_piece_gives_its_own_branch() -> None:
@@ -90,19 +82,10 @@ def test_nothing_loose_gives_nothing() -> None:
 
 def test_the_turn_limit_ends_a_branch() -> None:
     graph, skeleton = drawn_graph("l   \nl bb\nlbb \nl   \ns   \nt   \no   ")
-    strict = Parameters.learned().changed("side_branches", turn_max=0.5)
+    strict = Parameters.paper().changed("side_branches", turn_max=0.5)
     straight = find_side_branches(skeleton, graph, strict)
     assert straight.edges_with(Label.SIDE_BRANCH).sum() == 2
     assert found("l   \nl bb\nlbb \nl   \ns   \nt   \no   ") == 4
-
-
-def test_short_leaders_are_dropped_and_long_ones_kept() -> None:
-    skeleton = tree("l   \nl   \nl  l\nl  l\nssss\nt   \no   ")
-    cleaned = drop_stubs(skeleton, 0.35)
-    assert len(cleaned) == len(skeleton) - 2
-    assert offenders(cleaned) == {}
-    assert len(drop_stubs(skeleton, 0.15)) == len(skeleton)
-    assert len(drop_stubs(skeleton, 0.0)) == len(skeleton)
 
 
 def test_every_letter_has_a_label() -> None:

@@ -49,7 +49,7 @@ class Subject(Protocol):
         """Trials that people corrected."""
 
     def edges(self) -> dict[str, Any]:
-        """What the edge networks say of its edges, see `experiment.edges`; empty: nothing known."""
+        """What the edge network says of its edges, see `experiment.edges`; empty: nothing known."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Simulated:
         return []
 
     def edges(self) -> dict[str, Any]:
-        """Both networks on all candidate edges."""
+        """The network on all candidate edges."""
         from prunus.experiment.edges import edge_record
 
         return edge_record(self.tree())
@@ -108,7 +108,6 @@ class OracleScorer:
 
     tree: Tree
     name: str = "oracle"
-    floor: float = 0.0
 
     def __call__(self, candidates: CandidateGraph) -> Floats:
         """Confidence (E,): 1 where the edge follows wood."""

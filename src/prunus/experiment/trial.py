@@ -20,7 +20,7 @@ from prunus.model import Label, Skeleton
 from prunus.params import Parameters
 from prunus.pipeline import follow
 from prunus.result import Result
-from prunus.search import learned_score_of, shipped_score, skel_score
+from prunus.search import skel_score
 
 Record = dict[str, Any]
 """What is measured of a trial: plain numbers and words, as they go into results.json."""
@@ -51,30 +51,7 @@ WAYS = (
 )  # fmt: skip
 
 
-_PAPER = Parameters.paper()
-ABLATIONS = (
-    Way(
-        "paper + our network", "the paper's, but our network",
-        _PAPER.changed("confidence", edge_net="ours"),
-    ),
-    Way(
-        "paper + floor", "the paper's, hopeless edges left out",
-        _PAPER.changed("confidence", floor=0.30),
-    ),
-    Way("paper + refine", "the paper's, refined", _PAPER.changed("search", refine=True)),
-    Way(
-        "paper + stubs", "the paper's, stubs dropped", _PAPER.changed("leaders", min_length=0.35)
-    ),
-    Way(
-        "paper + several", "the paper's, several side branches a piece",
-        _PAPER.changed("side_branches", several=True),
-    ),
-    Way(
-        "paper + axes", "the paper's, superpoints on axes",
-        _PAPER.changed("superpoints", place="axes"),
-    ),
-)  # fmt: skip
-"""What each part beyond the paper brings its method."""
+ABLATIONS: tuple[Way, ...] = ()
 
 
 def ways(ablation: bool) -> tuple[Way, ...]:
@@ -149,13 +126,11 @@ def _scores(found: Skeleton, right: Skeleton, result: Result) -> Record:
 
 
 def score_of(skeleton: Skeleton, result: Result) -> float:
-    """What a skeleton on the superpoints of a result scores under the score that made the result.
+    """SkelScore of a skeleton on the superpoints of a result.
 
     Edges that are no candidates have no confidence.
     """
     graph = result.graph
-    if result.params.method == "learned":
-        return learned_score_of(skeleton, graph, shipped_score())
     known = dict(zip(map(tuple, graph.edges.tolist()), graph.confidence.tolist(), strict=True))
     ends = np.sort(skeleton.superpoint[skeleton.edges], axis=1).tolist()
     confidence = [float("nan"), *(known.get((i, j), 0.0) for i, j in ends)]

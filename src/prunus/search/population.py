@@ -12,23 +12,14 @@ from prunus.model import Ints, SeededGraph
 from prunus.params import Parameters
 from prunus.search.eligible import grammar_table
 from prunus.search.potential import path_priors
-from prunus.search.refine import refine
 from prunus.search.result import SearchResult, as_skeleton
 from prunus.search.score import graph_table
 
 
-def search(
-    seeded: SeededGraph,
-    params: Parameters,
-    rng: np.random.Generator,
-    *,
-    end_at_tips: bool = False,
-) -> SearchResult:
+def search(seeded: SeededGraph, params: Parameters, rng: np.random.Generator) -> SearchResult:
     """Grow K skeletons from the base towards the tips (sec. Population-based search).
 
-    Returns the best over all iterations, refined if the parameters say so. With `end_at_tips` it is
-    then refined once more into a union of base-to-tip paths: a little less SkelScore, and without
-    the branches that explain the same wood twice.
+    Returns the best over all iterations.
     """
     graph, score, cost = graph_table(seeded, params, rng)
     priors = path_priors(graph, score, cost, seeded.base, seeded.tips)
@@ -48,14 +39,6 @@ def search(
         stands, weight, live = merge_equal(graph, population, proposals)
         copies = resample(weight, K, most, rng.random(K)) if len(weight) else stands
         population = advance(graph, grammar, population, proposals, stands, live, copies)
-    if params.search.refine:
-        anywhere = np.ones(len(best), np.bool_)
-        best, climbed = refine(best, graph, grammar, cost, anywhere)
-        best_score = float(climbed[-1])
-    if params.search.refine and end_at_tips:
-        at_tips = np.isin(np.arange(len(best)), [seeded.base, *seeded.tips])
-        best, climbed = refine(best, graph, grammar, cost, at_tips)
-        best_score = float(climbed[-1])
     return SearchResult(as_skeleton(best, graph, seeded), best_score, np.array(history))
 
 

@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from prunus.kernels.tables import LABELS, GraphTable
 from prunus.model import Floats, SeededGraph, Skeleton, parents_first
-from prunus.search.refine import Entries
+
+Entries = NDArray[np.int32]
+"""A skeleton as a row of entries (N,), see `kernels/tables.py`."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,8 @@
-"""Edge images: the points of a candidate edge, seen from the side (sec. Edge evaluation)."""
+"""What the network is shown of a candidate edge (sec. Edge evaluation, Appendix A).
+
+An image of its points, seen from the side, and where it lies in the tree. Nothing here changes
+when the cloud is moved or turned half round about Z, or when the ends of an edge are swapped.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from prunus.kernels import frames
-from prunus.model import CandidateGraph
+from prunus.model import CandidateGraph, Floats, Superpoints
+
+LOW = 5
+"""The ground, or the foot of the tree, is this percentile of the superpoints' heights."""
 
 
 def edge_images(candidates: CandidateGraph) -> NDArray[np.float32]:
@@ -19,3 +26,23 @@ def edge_images(candidates: CandidateGraph) -> NDArray[np.float32]:
     return frames.edge_images(
         under.cloud.xyz, under.xyz, under.start, under.members, candidates.edges, under.radius
     )
+
+
+def description(candidates: CandidateGraph) -> NDArray[np.float32]:
+    """Description vectors (E, 4): the midpoint relative to the tree, metres; sine of elevation.
+
+    The midpoint is relative to the median along the row and in depth, without signs, and to the
+    lower end in height.
+    """
+    place = _places(candidates.superpoints)
+    ends = place[candidates.edges]
+    vectors = np.diff(candidates.xyz[candidates.edges], axis=1)[:, 0]
+    elevation = np.abs(vectors[:, 2]) / np.maximum(np.linalg.norm(vectors, axis=-1), 1e-9)
+    return np.column_stack([np.abs(ends.mean(axis=1)), elevation]).astype(np.float32)
+
+
+def _places(under: Superpoints) -> Floats:
+    """Superpoints (N, 3) relative to the middle of the tree, and to its lower end in height."""
+    middle = np.median(under.xyz, axis=0)
+    middle[2] = np.percentile(under.xyz[:, 2], LOW)
+    return np.asarray(under.xyz - middle)

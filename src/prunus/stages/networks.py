@@ -4,47 +4,39 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.model import CandidateGraph, Floats
 from prunus.networks import WEIGHTS, open_network
-from prunus.stages.context import context_of, description
-from prunus.stages.images import edge_images
+from prunus.stages.images import description, edge_images
+
+SHIPPED = WEIGHTS / "paper.onnx"
+"""The network that the package ships, made by `prunus train`."""
 
 
 def shipped_or_own(name: str) -> Path:
-    """The file of a network: `ours` and `paper` are those that the package ships."""
-    return WEIGHTS / f"{name}.onnx" if name in ("ours", "paper") else Path(name)
+    """The file of a network: `paper` is the one that the package ships."""
+    return SHIPPED if name == "paper" else Path(name)
 
 
-SHOWN = (
-    frozenset({"image", "description"}),
-    frozenset({"profile", "bend", "edge", "met", "meeting"}),
-)
+SHOWN = (frozenset({"image", "description"}),)
 TOLD = frozenset({"confidence", "category"})
-"""What edge networks are shown, and what they tell."""
+"""What an edge network is shown, and what it tells."""
 
 
 @dataclass(frozen=True)
 class NetworkScorer:
-    """An edge network from an ONNX file; its inputs say what it wants to see."""
+    """An edge network from an ONNX file; that of the package where none is named."""
 
-    path: Path = WEIGHTS / "ours.onnx"
+    path: Path = SHIPPED
     name: str = "cnn"
-    floor: float = 0.30
 
     def __post_init__(self) -> None:
         if not isinstance(self.path, str | Path):
             raise PrunusError(f"network: {self.path!r}; expected the name of an ONNX file")
         object.__setattr__(self, "path", Path(self.path))
-
-    @classmethod
-    def shipped(cls, edge_net: str) -> NetworkScorer:
-        """The network that the package ships under that name: paper or ours."""
-        return cls(WEIGHTS / f"{edge_net}.onnx", "cnn" if edge_net == "ours" else f"cnn {edge_net}")
 
     def check(self) -> None:
         """Raise PrunusError where the file is no edge network."""
@@ -63,21 +55,13 @@ class NetworkScorer:
         if len(candidates.edges) == 0:
             return np.zeros(0), np.zeros((0, 5))
         session = open_network(self.path, SHOWN, TOLD)
-        shown = _shown(candidates, [one.name for one in session.get_inputs()])
+        shown = {"image": edge_images(candidates), "description": description(candidates)}
         try:
             told = session.run(["confidence", "category"], shown)
         except Exception as error:
             # the errors of onnxruntime share no class, and what they are depends on the network
             raise PrunusError(f"{self.path}: {_not_ours(error)}") from error
         return told[0], told[1]
-
-
-def _shown(candidates: CandidateGraph, wanted: list[str]) -> dict[str, Any]:
-    """What a network with inputs of these names sees."""
-    if "image" in wanted:
-        return {"image": edge_images(candidates), "description": description(candidates)}
-    context = context_of(candidates)
-    return {name: getattr(context, name) for name in wanted}
 
 
 def _not_ours(error: Exception) -> str:

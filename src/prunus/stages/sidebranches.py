@@ -49,12 +49,10 @@ def find_side_branches(skeleton: Skeleton, seeded: SeededGraph, params: Paramete
     """The skeleton with the side branches of its leaders, from the loose pieces that touch them.
 
     A piece that also touches trunk or support is not a side branch, and one that does not gives
-    one. With `several`, beyond the paper, a piece loses only the superpoints that touch, and gives
-    side branches one after another as long as they reach `min_length`.
+    one.
     """
     row_of = {int(node): row for row, node in enumerate(skeleton.superpoint)}
-    barred = _touching(skeleton, row_of, seeded, params) if params.side_branches.several else set()
-    graph, piece = _free_graph(seeded, set(row_of), barred, params)
+    graph, piece = _free_graph(seeded, set(row_of), params)
     starts: dict[int, list[Edge]] = {}
     rejected = set()
     for edge in graph.confidence:
@@ -66,41 +64,14 @@ def find_side_branches(skeleton: Skeleton, seeded: SeededGraph, params: Paramete
         elif _is_sideways(graph.vector(edge), skeleton, row, params):
             starts.setdefault(group, []).append(edge)
     kept = [starts[group] for group in sorted(starts) if group not in rejected]
-    paths = [path for edges in kept for path in _branches_of(graph, edges)]
+    paths = [_longest_cheapest(graph, edges) for edges in kept]
     return _with_paths(skeleton, row_of, paths, graph)
 
 
-def _branches_of(graph: _FreeGraph, starts: list[Edge]) -> list[list[Edge]]:
-    """The side branches of a piece, the longest first; none shares a superpoint with another."""
-    limits = graph.params.side_branches
-    paths: list[list[Edge]] = []
-    taken: set[int] = set()
-    while starts and (limits.several or not paths):
-        path = _longest_cheapest(graph, starts, taken)
-        if paths and sum(graph.length(edge) for edge in path) < limits.min_length:
-            break
-        paths.append(path)
-        taken |= {node for _, node in path}
-        starts = [edge for edge in starts if edge[1] not in taken]
-    return paths
-
-
-def _touching(
-    skeleton: Skeleton, row_of: dict[int, int], seeded: SeededGraph, params: Parameters
-) -> set[int]:
-    """Superpoints outside the skeleton that a confident edge joins to trunk or support."""
-    parents = np.isin(skeleton.label, SIDE_BRANCH_PARENTS)
-    parents[0] = False
-    sure = seeded.edges[seeded.confidence >= params.confidence.alpha_conf]
-    pairs = np.concatenate([sure, sure[:, ::-1]]).tolist()
-    return {j for i, j in pairs if i in row_of and j not in row_of and not parents[row_of[i]]}
-
-
 def _free_graph(
-    seeded: SeededGraph, taken: set[int], barred: set[int], params: Parameters
+    seeded: SeededGraph, taken: set[int], params: Parameters
 ) -> tuple[_FreeGraph, Ints]:
-    free = ~np.isin(seeded.edges, list(barred)).any(axis=1)
-    sure = np.flatnonzero((seeded.confidence >= params.confidence.alpha_conf) & free)
+    sure = np.flatnonzero(seeded.confidence >= params.confidence.alpha_conf)
     inside = np.isin(seeded.edges[sure], list(taken))
     piece = components(len(seeded.xyz), seeded.edges[sure[~inside.any(axis=1)]])
     confidence: dict[Edge, float] = {}
@@ -122,7 +93,7 @@ def _is_sideways(vector: Floats, skeleton: Skeleton, row: int, params: Parameter
     return bool(params.side_branches.angle_min <= angle <= params.side_branches.angle_max)
 
 
-def _longest_cheapest(graph: _FreeGraph, starts: list[Edge], taken: set[int]) -> list[Edge]:
+def _longest_cheapest(graph: _FreeGraph, starts: list[Edge]) -> list[Edge]:
     """Of the cheapest paths to each free superpoint of a piece, the one that reaches farthest."""
     best: dict[int, tuple[float, list[Edge]]] = {}
     heap: list[tuple[float, Edge, list[Edge]]] = []
@@ -137,7 +108,7 @@ def _longest_cheapest(graph: _FreeGraph, starts: list[Edge], taken: set[int]) ->
             continue
         settled.add(edge)
         best.setdefault(edge[1], (total, path))
-        visited = taken | {node for step in path for node in step}
+        visited = {node for step in path for node in step}
         for node in graph.neighbours.get(edge[1], []):
             step = graph.cost((edge[1], node), edge)
             if node not in visited and (edge[1], node) not in settled and step is not None:

@@ -182,8 +182,7 @@ def queue_of(work: Work) -> Queue:
             "version_of_prunus": __version__,
         }
     )
-    scorer = NetworkScorer.shipped(work.settings.params.confidence.edge_net)
-    every = score_edges(find_candidates(state.result.graph.superpoints), scorer)
+    every = score_edges(find_candidates(state.result.graph.superpoints), NetworkScorer())
     return Queue.of(every, state.scan.to_input, work.folder / "labels.jsonl", head)
 
 

@@ -10,8 +10,8 @@ import pytest
 from prunus.errors import NoTreeError
 from prunus.evaluate.right import right_edges
 from prunus.measure import branches
-from prunus.measure.trust import GrownModel, KnownGrown, Trust, grown_model, trust_in_grown
-from prunus.measure.trust.grown import of_branches, of_edges, of_tree
+from prunus.measure.trust import Known, Model, Trust, shipped_model, trust_in
+from prunus.measure.trust.evidence import of_branches, of_edges, of_tree
 from prunus.measure.trust.review import whole_review
 from prunus.model import Floats, Label, Role, Skeleton, Told
 from prunus.pipeline import skeletonize
@@ -25,7 +25,7 @@ FOR = ("least", "mean", "kind", "rival", "wood", "way", "straight", "explained",
 AGAINST = ("beside", "scatter", "unclear", "astray", "loose", "around")
 
 
-def known(picture: Skeleton | None = None, **changes: float) -> KnownGrown:
+def known(picture: Skeleton | None = None, **changes: float) -> Known:
     """A drawn tree of which the field told all rightly, but for some numbers of the whole."""
     drawn = tree() if picture is None else picture
     rows = np.arange(len(drawn))
@@ -38,7 +38,7 @@ def known(picture: Skeleton | None = None, **changes: float) -> KnownGrown:
     whole = {"unclear": 0.3, "explained": 0.95, "loose": 0.1, "around": 0.0, "astray": 0.05}
     told = Told(role=role, scatter=np.full(len(drawn), 0.004),
                 whole=whole | {"lead": 4.0} | changes)  # fmt: skip
-    return KnownGrown(skeleton, told)
+    return Known(skeleton, told)
 
 
 @pytest.fixture(scope="module")
@@ -48,19 +48,19 @@ def textbook() -> Result:
 
 def test_the_model_survives_its_file(tmp_path: Path) -> None:
     path = tmp_path / "trust.toml"
-    path.write_text(grown_model().to_toml())
-    assert GrownModel.from_toml(path) == grown_model()
+    path.write_text(shipped_model().to_toml())
+    assert Model.from_toml(path) == shipped_model()
 
 
 def test_nothing_that_speaks_for_a_tree_lowers_its_trust() -> None:
-    model = grown_model()
+    model = shipped_model()
     for odds in (*model.parts.branch.values(), model.parts.edge, *model.whole.values()):
         assert all(odds.weight.get(name, 0.0) >= 0 for name in FOR)
         assert all(odds.weight.get(name, 0.0) <= 0 for name in AGAINST)
 
 
 def test_all_that_the_model_asks_for_is_known() -> None:
-    model, told = grown_model(), known()
+    model, told = shipped_model(), known()
     for branch, evidence in zip(branches(told.skeleton), of_branches(told, 1.0), strict=True):
         assert set(model.parts.branch[branch.label].weight) <= set(evidence)
     edges = of_edges(told, np.full(len(branches(told.skeleton)), 0.5), 1.0)
@@ -101,21 +101,21 @@ def test_what_is_wrong_is_trusted_less() -> None:
     [({"astray": 0.4, "unclear": 1.2}, "wood"), ({"lead": -0.5}, "meant")],
 )
 def test_a_doubt_in_the_whole_lowers_all(changes: dict[str, float], part: str) -> None:
-    fine, less = trust_in_grown(known()), trust_in_grown(known(**changes))
+    fine, less = trust_in(known()), trust_in(known(**changes))
     assert getattr(less, part) < getattr(fine, part)
     assert less.tree < fine.tree
     assert (less.branch < fine.branch).all()
 
 
 def test_roles_that_are_unclear_are_of_another_form() -> None:
-    assert trust_in_grown(known(unclear=1.2)).form < trust_in_grown(known()).form
+    assert trust_in(known(unclear=1.2)).form < trust_in(known()).form
 
 
 def test_unsure_labels_lower_the_trust_in_branches() -> None:
     told = known()
     role = np.full_like(told.told.role, 1 / len(Role))
-    unsure = KnownGrown(told.skeleton, replace(told.told, role=role))
-    fine, less = trust_in_grown(told), trust_in_grown(unsure)
+    unsure = Known(told.skeleton, replace(told.told, role=role))
+    fine, less = trust_in(told), trust_in(unsure)
     assert less.tree < fine.tree
     assert less.branch.mean() < fine.branch.mean()
 
@@ -129,7 +129,7 @@ def test_a_strand_that_runs_beside_a_leader_is_evidence_against_both() -> None:
     leader, other = (one for one in branches(double.skeleton, Label.LEADER)[:2])
     count = min(len(leader.rows), len(other.rows)) - 1
     xyz[other.rows[1 : count + 1]] = xyz[leader.rows[1 : count + 1]] + [0.02, 0.0, 0.0]
-    beside = KnownGrown(replace(double.skeleton, xyz=xyz), double.told)
+    beside = Known(replace(double.skeleton, xyz=xyz), double.told)
     number = [one.rows[1] for one in branches(double.skeleton)].index(leader.rows[1])
     assert of_branches(double, 1.0)[number]["beside"] == 0
     assert of_branches(beside, 1.0)[number]["beside"] > 0.5
@@ -139,7 +139,7 @@ def test_a_least_confidence_on_the_way_counts_for_all_above() -> None:
     told = known()
     confidence = told.skeleton.confidence.copy()
     confidence[1] = 0.05
-    weak = KnownGrown(replace(told.skeleton, confidence=confidence), told.told)
+    weak = Known(replace(told.skeleton, confidence=confidence), told.told)
     first, *above = of_branches(weak, 1.0)
     assert first["way"] == 0.0
     assert all(one["way"] == pytest.approx(np.log(0.05)) for one in above)
