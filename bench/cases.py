@@ -20,16 +20,16 @@ from prunus.evaluate.curves import curve_measures
 from prunus.evaluate.found import branch_measures
 from prunus.geometry.near import within
 from prunus.io.clouds import write_cloud
-from prunus.kernels.frames import edge_images
 from prunus.kernels.neighbours import cover
 from prunus.model import SeededGraph
+from prunus.paper.kernels.frames import edge_images
+from prunus.paper.networks import NetworkScorer
+from prunus.paper.population import search
+from prunus.paper.potential import path_priors
+from prunus.paper.score import graph_table
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
-from prunus.search import search
-from prunus.search.potential import path_priors
-from prunus.search.score import graph_table
 from prunus.simulate import simulate_scan
-from prunus.stages.networks import NetworkScorer
 
 Row = tuple[str, float, str]
 RUNS = 7
@@ -175,7 +175,7 @@ def quality() -> Iterator[Row]:
 
 def optimum() -> Iterator[Row]:
     """Share of the exhaustive optimum on 30 random graphs: 8 nodes, 11 edges, 7 tips."""
-    from tests.search.graphs import orchard, random_graph
+    from tests.paper.graphs import orchard, random_graph
 
     graphs = [random_graph(seed, nodes=8, edges=11, tips=7) for seed in range(30)]
     best = [orchard(graph, PARAMS).best()[1] for graph in graphs]

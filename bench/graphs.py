@@ -6,7 +6,6 @@ from functools import cache
 
 import numpy as np
 
-from prunus.kernels.forest import spanning_forest
 from prunus.model import (
     CandidateGraph,
     Floats,
@@ -17,13 +16,14 @@ from prunus.model import (
     Skeleton,
     Superpoints,
 )
+from prunus.paper.candidates import find_candidates
+from prunus.paper.confidence import score_edges
+from prunus.paper.kernels.forest import spanning_forest
+from prunus.paper.networks import NetworkScorer
+from prunus.paper.seeds import find_seeds
+from prunus.paper.superpoints import find_superpoints
 from prunus.params import Parameters
 from prunus.simulate import simulate_scan
-from prunus.stages.candidates import find_candidates
-from prunus.stages.confidence import score_edges
-from prunus.stages.networks import NetworkScorer
-from prunus.stages.seeds import find_seeds
-from prunus.stages.superpoints import find_superpoints
 
 PARAMS = Parameters.paper()
 SPACING = 1.2

@@ -17,8 +17,8 @@ from prunus.io.skeletons import read_record, read_skeleton, sha256_of, write_ske
 from prunus.io.swc import write_swc
 from prunus.measure.cuts import shipped_rules
 from prunus.model import FRAMES, RigidMotion
+from prunus.paper.confidence import ConstantScorer
 from prunus.params import Parameters
-from prunus.stages.confidence import ConstantScorer
 from tests.conftest import simulated
 from tests.measure.cuts.trees import drawn
 from tests.test_cli import prunus

@@ -19,8 +19,8 @@ import prunus
 from prunus import Parameters, PointCloud, PrunusError, Skeleton, search_graph, skeletonize
 from prunus.measure import branches
 from prunus.model import CandidateGraph, RigidMotion
+from prunus.paper.confidence import ConstantScorer
 from prunus.pipeline import follow
-from prunus.stages.confidence import ConstantScorer
 from tests.conftest import simulated
 
 

@@ -35,7 +35,7 @@ from prunus.result import Result, Seconds, timed
 from prunus.workers import side_by_side
 
 if TYPE_CHECKING:
-    from prunus.stages.confidence import EdgeScorer
+    from prunus.paper.confidence import EdgeScorer
 
 Record = dict[str, Any]
 """What `--json` prints of one tree: a `TreeRecord`."""

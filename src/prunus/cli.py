@@ -16,9 +16,9 @@ from prunus.ending import end_on_signals
 from prunus.errors import OptionError, PrunusError, Status, blaming_the_command, describe
 
 if TYPE_CHECKING:
+    from prunus.paper.networks import NetworkScorer
     from prunus.params import Parameters
     from prunus.progress import Waiting
-    from prunus.stages.networks import NetworkScorer
 
 
 class Prunus(TyperGroup):
@@ -699,7 +699,7 @@ def _network(weights: Path | None) -> NetworkScorer | None:
     """A network of one's own; OptionError where it is none, before anything is done."""
     if weights is None:
         return None
-    from prunus.stages.networks import NetworkScorer
+    from prunus.paper.networks import NetworkScorer
 
     network = NetworkScorer(weights)
     with blaming_the_command():

@@ -20,7 +20,7 @@ from prunus.result import Result, Seconds, timed
 from prunus.sensing.diagnosis import explaining
 
 if TYPE_CHECKING:
-    from prunus.stages.confidence import EdgeScorer
+    from prunus.paper.confidence import EdgeScorer
 
 
 def skeletonize(
@@ -56,7 +56,7 @@ def follow(
     params, seed = checked_params(params), checked_seed(seed)
     if params.method != "default":
         # Here, since no other chain needs a compiler.
-        from prunus.searched import search_tree
+        from prunus.paper.chain import search_tree
 
         return search_tree(cloud, at, params, seed, scorer)
     if scorer is not None:

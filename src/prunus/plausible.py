@@ -13,10 +13,10 @@ import numpy as np
 from prunus.errors import NoTreeError
 from prunus.measure.remarks import explained_points
 from prunus.model import Label, Skeleton
+from prunus.paper.trunks import find_trunks
 from prunus.result import Result
 from prunus.sensing.diagnosis import LINE_M, STEP_M, coarse_words, coarseness, spread
 from prunus.sensing.linear import linear_at, linear_of
-from prunus.sensing.trunks import find_trunks
 
 # The limits were set on simulated and drawn clouds alone, by `python -m bench.plausible`: 142 scans
 # of 40 trees, on 130 of which wood could be followed, 36 of them raw with nothing taken out; 22

@@ -8,11 +8,11 @@ import pytest
 
 from prunus.evaluate.curves import curve_measures
 from prunus.model import Floats, PointCloud, Skeleton
+from prunus.paper.score import skel_score
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.result import Result
 from prunus.rules import offenders
-from prunus.search import skel_score
 from tests.conftest import simulated
 
 METHODS = {

@@ -25,11 +25,11 @@ from prunus.learn.recipes import Recipe  # noqa: E402
 from prunus.learn.school import Course, lines_of, school  # noqa: E402
 from prunus.learn.start import start_from  # noqa: E402
 from prunus.learn.train import between, losses, onnx_bytes, predict  # noqa: E402
+from prunus.paper.candidates import find_candidates  # noqa: E402
+from prunus.paper.networks import SHIPPED, NetworkScorer  # noqa: E402
 from prunus.params import Parameters  # noqa: E402
 from prunus.pipeline import skeletonize  # noqa: E402
 from prunus.simulate.orchard import simulate_tree  # noqa: E402
-from prunus.stages.candidates import find_candidates  # noqa: E402
-from prunus.stages.networks import SHIPPED, NetworkScorer  # noqa: E402
 
 PARAMS = Parameters.paper().changed("input", points=8000).changed("search", K=20)
 LABELS = 60

@@ -19,11 +19,11 @@ from prunus.learn.recipes import Recipe  # noqa: E402
 from prunus.learn.school import Course, school  # noqa: E402
 from prunus.learn.train import calibrated, onnx_bytes, predict, train  # noqa: E402
 from prunus.model import CandidateGraph  # noqa: E402
+from prunus.paper.candidates import find_candidates  # noqa: E402
+from prunus.paper.networks import NetworkScorer  # noqa: E402
+from prunus.paper.superpoints import find_superpoints  # noqa: E402
 from prunus.params import Parameters  # noqa: E402
 from prunus.simulate.orchard import simulate_tree  # noqa: E402
-from prunus.stages.candidates import find_candidates  # noqa: E402
-from prunus.stages.networks import NetworkScorer  # noqa: E402
-from prunus.stages.superpoints import find_superpoints  # noqa: E402
 from tests.conftest import field_scan  # noqa: E402
 
 

@@ -69,7 +69,7 @@ def searched(draft: Draft, held: Held, graph: SeededGraph, params: Parameters, s
         return draft
     seeded = held_graph(draft, held, graph)
     # Here, since it takes a compiler.
-    from prunus.searched import best_skeleton
+    from prunus.paper.chain import best_skeleton
 
     found = best_skeleton(seeded, params, np.random.default_rng(seed), {}).skeleton
     best = _draft_of(found, draft)

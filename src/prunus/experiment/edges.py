@@ -10,10 +10,10 @@ from prunus.experiment.orchard import Tree
 from prunus.learn.labels import UNTOLD, TrueWood, edge_labels
 from prunus.learn.tables import measures
 from prunus.model import CandidateGraph, Ints
+from prunus.paper.candidates import find_candidates
+from prunus.paper.networks import NetworkScorer
+from prunus.paper.superpoints import find_superpoints
 from prunus.params import Parameters
-from prunus.stages.candidates import find_candidates
-from prunus.stages.networks import NetworkScorer
-from prunus.stages.superpoints import find_superpoints
 
 
 def edge_record(tree: Tree) -> dict[str, Any]:

@@ -105,7 +105,8 @@ def edge_rows(edges: dict[str, Any]) -> list[list[str]]:
     """The paper's two tables of edge confidence: its own figures, and its network here."""
     rows = []
     for key in ("validity_accuracy", "category_accuracy", "calibration_error"):
-        rows.append([key.replace("_", " "), _percent(PAPER.get(key)), _percent(edges[key])])
+        in_paper: Any = PAPER.get(key)
+        rows.append([key.replace("_", " "), _percent(in_paper), _percent(edges[key])])
     for key in ("valid", "invalid", *(label.word for label in Label), "other"):
         both: list[Any] = [PAPER[key], edges[key]]
         pairs = [" / ".join(_percent(value) for value in pair) for pair in both]

@@ -17,10 +17,10 @@ from prunus.experiment.orchard import OracleScorer, Tree
 from prunus.io.tables import without_nan
 from prunus.measure import shown
 from prunus.model import Label, Skeleton
+from prunus.paper.score import skel_score
 from prunus.params import Parameters
 from prunus.pipeline import follow
 from prunus.result import Result
-from prunus.search import skel_score
 
 Record = dict[str, Any]
 """What is measured of a trial: plain numbers and words, as they go into results.json."""

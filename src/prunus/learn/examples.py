@@ -23,10 +23,10 @@ from prunus.io.scans import ScannedTree, read_scan
 from prunus.learn.labels import UNTOLD, TrueWood, edge_labels
 from prunus.measure import counting_rows
 from prunus.model import Bools, CandidateGraph, Ints, Kind, PointCloud, Superpoints
+from prunus.paper.candidates import find_candidates
+from prunus.paper.images import description, edge_images
+from prunus.paper.superpoints import find_superpoints
 from prunus.params import Cover
-from prunus.stages.candidates import find_candidates
-from prunus.stages.images import description, edge_images
-from prunus.stages.superpoints import find_superpoints
 from prunus.workers import in_order
 
 POINTS = (20_000, 100_000)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
-from prunus.kernels.frames import HIGH, WIDE
+from prunus.paper.kernels.frames import HIGH, WIDE
 
 VALIDITY = 2
 OUTPUTS = 7

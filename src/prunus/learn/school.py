@@ -16,8 +16,8 @@ from prunus.learn.lessons import Sources, Watch, lessons_from
 from prunus.learn.tables import measures, table
 from prunus.names import as_text
 from prunus.networks import WEIGHTS
+from prunus.paper.networks import shipped_or_own
 from prunus.params import Parameters
-from prunus.stages.networks import shipped_or_own
 
 
 @dataclass(frozen=True)

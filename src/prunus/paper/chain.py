@@ -12,17 +12,19 @@ import numpy as np
 from prunus.grown import isolated_tree
 from prunus.measure import remarks
 from prunus.model import Floats, PointCloud, ScoredGraph, SeededGraph, Skeleton
+from prunus.paper.candidates import find_candidates
+from prunus.paper.confidence import EdgeScorer, check_scorer, score_edges
+from prunus.paper.found import SearchResult
+from prunus.paper.networks import NetworkScorer
+from prunus.paper.population import search
+from prunus.paper.score import skel_score
+from prunus.paper.seeds import find_seeds, out_of_weeds
+from prunus.paper.sidebranches import find_side_branches
+from prunus.paper.superpoints import find_superpoints
+from prunus.paper.trunks import FOOT_REACH_M, find_foot, on_wood
 from prunus.params import Parameters
 from prunus.result import Result, Seconds, timed
-from prunus.search import SearchResult, search, skel_score
 from prunus.sensing.isolated import Isolated
-from prunus.sensing.trunks import FOOT_REACH_M, find_foot, on_wood
-from prunus.stages.candidates import find_candidates
-from prunus.stages.confidence import EdgeScorer, check_scorer, score_edges
-from prunus.stages.networks import NetworkScorer
-from prunus.stages.seeds import find_seeds, out_of_weeds
-from prunus.stages.sidebranches import find_side_branches
-from prunus.stages.superpoints import find_superpoints
 
 
 def search_tree(

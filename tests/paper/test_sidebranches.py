@@ -11,9 +11,9 @@ from prunus.model import (
     Skeleton,
     Superpoints,
 )
+from prunus.paper.sidebranches import find_side_branches
 from prunus.params import Parameters
 from prunus.rules import offenders
-from prunus.stages.sidebranches import find_side_branches
 from tests.drawn import LABELS, STEP, cells, tree
 
 

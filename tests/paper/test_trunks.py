@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from prunus.model import PointCloud, ScoredGraph, Superpoints
-from prunus.sensing.trunks import on_wood
-from prunus.stages.candidates import find_candidates
+from prunus.paper.candidates import find_candidates
+from prunus.paper.trunks import on_wood
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ import pytest
 
 from prunus.errors import PrunusError
 from prunus.model import CandidateGraph, Floats, Label, PointCloud, ScoredGraph, Superpoints
+from prunus.paper.seeds import doubts_of_base, find_seeds, nearest_superpoint, out_of_weeds
 from prunus.params import Parameters
-from prunus.stages.seeds import doubts_of_base, find_seeds, nearest_superpoint, out_of_weeds
 
 FAR = np.array([31.0, -7.0, 2.0])
 """The trunk stands there in the file."""

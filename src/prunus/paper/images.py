@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from prunus.kernels import frames
 from prunus.model import CandidateGraph, Floats, Superpoints
+from prunus.paper.kernels import frames
 
 LOW = 5
 """The ground, or the foot of the tree, is this percentile of the superpoints' heights."""

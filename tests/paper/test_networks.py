@@ -9,11 +9,11 @@ import pytest
 
 from prunus.errors import PrunusError
 from prunus.model import CandidateGraph, PointCloud, Superpoints
+from prunus.paper.candidates import find_candidates
+from prunus.paper.confidence import score_edges
+from prunus.paper.networks import NetworkScorer
+from prunus.paper.superpoints import find_superpoints
 from prunus.params import Parameters
-from prunus.stages.candidates import find_candidates
-from prunus.stages.confidence import score_edges
-from prunus.stages.networks import NetworkScorer
-from prunus.stages.superpoints import find_superpoints
 from tests.conftest import field_scan
 
 

@@ -7,10 +7,17 @@ collision never merges two skeletons. (Sec. Proposing and resampling candidate s
 import numpy as np
 
 from prunus.kernels.compiled import kernel
-from prunus.kernels.paths import Words, include
-from prunus.kernels.propose import reward
-from prunus.kernels.tables import ABSENT, LABELS, GrammarTable, GraphTable, Population, Proposals
 from prunus.model.arrays import Floats, Ints
+from prunus.paper.kernels.paths import Words, include
+from prunus.paper.kernels.propose import reward
+from prunus.paper.kernels.tables import (
+    ABSENT,
+    LABELS,
+    GrammarTable,
+    GraphTable,
+    Population,
+    Proposals,
+)
 
 
 @kernel

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from prunus.kernels import reference
-from prunus.kernels.frames import (
+from prunus.kernels.neighbours import within
+from prunus.paper.kernels.frames import (
     HIGH,
     WIDE,
     edge_images,
@@ -14,7 +15,6 @@ from prunus.kernels.frames import (
     least_direction,
     room_for_ends,
 )
-from prunus.kernels.neighbours import within
 
 
 @settings(deadline=None, max_examples=40)

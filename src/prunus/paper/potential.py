@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from prunus.errors import PrunusError
-from prunus.kernels.paths import tip_paths
-from prunus.kernels.tables import GraphTable, PriorTable
 from prunus.model import Floats, Ints
+from prunus.paper.kernels.paths import tip_paths
+from prunus.paper.kernels.tables import GraphTable, PriorTable
 
 MOST_BYTES = 4 * 2**30
 """A table of ways larger than this is none that a machine should be asked for."""

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from prunus.kernels.tables import LABELS, GraphTable
 from prunus.model import Floats, SeededGraph, Skeleton, parents_first
+from prunus.paper.kernels.tables import LABELS, GraphTable
 
 Entries = NDArray[np.int32]
-"""A skeleton as a row of entries (N,), see `kernels/tables.py`."""
+"""A skeleton as a row of entries (N,), see `paper/kernels/tables.py`."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from prunus.kernels import reference
-from prunus.kernels.forest import spanning_forest
+from prunus.paper.kernels.forest import spanning_forest
 
 
 @settings(deadline=None, max_examples=40)

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from prunus.kernels.propose import propose
-from prunus.kernels.ranks import average_ranks
-from prunus.kernels.resample import advance, merge_equal, resample
-from prunus.kernels.tables import ABSENT, BASE, GraphTable, Population
 from prunus.model import Ints, SeededGraph
+from prunus.paper.eligible import grammar_table
+from prunus.paper.found import SearchResult, as_skeleton
+from prunus.paper.kernels.propose import propose
+from prunus.paper.kernels.ranks import average_ranks
+from prunus.paper.kernels.resample import advance, merge_equal, resample
+from prunus.paper.kernels.tables import ABSENT, BASE, GraphTable, Population
+from prunus.paper.potential import path_priors
+from prunus.paper.score import graph_table
 from prunus.params import Parameters
-from prunus.search.eligible import grammar_table
-from prunus.search.potential import path_priors
-from prunus.search.result import SearchResult, as_skeleton
-from prunus.search.score import graph_table
 
 
 def search(seeded: SeededGraph, params: Parameters, rng: np.random.Generator) -> SearchResult:

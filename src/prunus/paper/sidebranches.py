@@ -9,8 +9,8 @@ import numpy as np
 
 from prunus.geometry.pieces import components
 from prunus.grammar import SIDE_BRANCH_PARENTS
-from prunus.kernels.angles import turn_angle
 from prunus.model import Floats, Ints, Label, SeededGraph, Skeleton
+from prunus.paper.kernels.angles import turn_angle
 from prunus.params import Parameters
 
 Edge = tuple[int, int]

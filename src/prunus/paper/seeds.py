@@ -7,9 +7,9 @@ from numpy.typing import ArrayLike
 
 from prunus.errors import NoTreeError, PrunusError
 from prunus.geometry.pieces import components
-from prunus.kernels.angles import grow_angle
-from prunus.kernels.forest import spanning_forest
 from prunus.model import FRAMES, Bools, Floats, Ints, Label, ScoredGraph, SeededGraph
+from prunus.paper.kernels.angles import grow_angle
+from prunus.paper.kernels.forest import spanning_forest
 from prunus.params import Parameters
 
 STEEP = np.pi / 4

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from prunus.kernels import reference
-from prunus.kernels.ranks import average_ranks
+from prunus.paper.kernels.ranks import average_ranks
 
 
 def ranks(values: list[float], copies: list[int]) -> list[float]:

@@ -12,8 +12,8 @@ from itertools import product
 import numpy as np
 
 from prunus.grammar import MAX_SUPPORTS, SEARCHED, TIP_LABEL
-from prunus.kernels.tables import GrammarTable
 from prunus.model import Ints, Label
+from prunus.paper.kernels.tables import GrammarTable
 from prunus.rules import ROOT, RULES
 
 MANY = MAX_SUPPORTS + 1

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from prunus.grammar import GROWTH_TARGET, SEARCHED
-from prunus.kernels.angles import grow_angle, turn_penalties
-from prunus.kernels.tables import GraphTable
 from prunus.model import Floats, Label, SeededGraph, Skeleton
+from prunus.paper.directed import Directed
+from prunus.paper.kernels.angles import grow_angle, turn_penalties
+from prunus.paper.kernels.tables import GraphTable
 from prunus.params import Grow, Parameters, Turn
-from prunus.search.directed import Directed
 
 EXACT = 2.0**32
 """Rewards are rounded to 1 / EXACT, so that a sum does not depend on the order of its terms."""

@@ -22,9 +22,9 @@ from prunus.model import (
     Superpoints,
 )
 from prunus.model.arrays import Shape, frozen
+from prunus.paper.population import search
+from prunus.paper.seeds import find_tips
 from prunus.params import Parameters, checked_params, checked_seed
-from prunus.search import search
-from prunus.stages.seeds import find_tips
 
 
 @dataclass(frozen=True, eq=False)

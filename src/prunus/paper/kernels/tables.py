@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from prunus.kernels.paths import Words
 from prunus.model.arrays import Bools, Floats, Ints
+from prunus.paper.kernels.paths import Words
 
 ABSENT = -1
 """The entry of a node outside the skeleton."""

@@ -5,14 +5,14 @@ import pytest
 
 from prunus.errors import PrunusError
 from prunus.model import CandidateGraph, Floats, Label, PointCloud, ScoredGraph
+from prunus.paper import superpoints
+from prunus.paper.candidates import find_candidates
+from prunus.paper.confidence import score_edges
+from prunus.paper.images import edge_images
+from prunus.paper.networks import NetworkScorer
+from prunus.paper.seeds import find_seeds
+from prunus.paper.superpoints import find_superpoints
 from prunus.params import Parameters
-from prunus.stages import superpoints
-from prunus.stages.candidates import find_candidates
-from prunus.stages.confidence import score_edges
-from prunus.stages.images import edge_images
-from prunus.stages.networks import NetworkScorer
-from prunus.stages.seeds import find_seeds
-from prunus.stages.superpoints import find_superpoints
 
 PARAMS = Parameters.paper()
 

@@ -5,19 +5,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from prunus.kernels.propose import eligible_pairs, live_tips, propose
-from prunus.kernels.ranks import average_ranks
 from prunus.kernels.reference import Orchard, Pairs
-from prunus.kernels.resample import advance, merge_equal, resample
-from prunus.kernels.tables import ABSENT, LABELS, Population
 from prunus.model import CandidateGraph, ScoredGraph, SeededGraph
+from prunus.paper.eligible import grammar_table
+from prunus.paper.kernels.propose import eligible_pairs, live_tips, propose
+from prunus.paper.kernels.ranks import average_ranks
+from prunus.paper.kernels.resample import advance, merge_equal, resample
+from prunus.paper.kernels.tables import ABSENT, LABELS, Population
+from prunus.paper.population import _bare, search
+from prunus.paper.potential import path_priors
+from prunus.paper.score import graph_table, skel_score
 from prunus.params import Parameters
-from prunus.search import search, skel_score
-from prunus.search.eligible import grammar_table
-from prunus.search.population import _bare
-from prunus.search.potential import path_priors
-from prunus.search.score import graph_table
-from tests.search.graphs import as_pairs, orchard, random_graph
+from tests.paper.graphs import as_pairs, orchard, random_graph
 
 PARAMS = Parameters.paper()
 

@@ -10,7 +10,7 @@ import numpy as np
 from prunus.errors import PrunusError
 from prunus.model import CandidateGraph, Floats
 from prunus.networks import WEIGHTS, open_network
-from prunus.stages.images import description, edge_images
+from prunus.paper.images import description, edge_images
 
 SHIPPED = WEIGHTS / "paper.onnx"
 """The network that the package ships, made by `prunus train`."""

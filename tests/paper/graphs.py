@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from prunus.kernels.angles import grow_angle, turn_angle
 from prunus.kernels.reference import Edge, Orchard, Pairs
 from prunus.model import (
     CandidateGraph,
@@ -15,6 +14,7 @@ from prunus.model import (
     Skeleton,
     Superpoints,
 )
+from prunus.paper.kernels.angles import grow_angle, turn_angle
 from prunus.params import Parameters
 from prunus.rules import offenders
 

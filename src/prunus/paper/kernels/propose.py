@@ -9,9 +9,10 @@ from typing import TypeVar
 import numpy as np
 
 from prunus.kernels.compiled import kernel
-from prunus.kernels.paths import Words
-from prunus.kernels.ranks import average_ranks
-from prunus.kernels.tables import (
+from prunus.model.arrays import Floats, Ints
+from prunus.paper.kernels.paths import Words
+from prunus.paper.kernels.ranks import average_ranks
+from prunus.paper.kernels.tables import (
     LABELS,
     GrammarTable,
     GraphTable,
@@ -19,7 +20,6 @@ from prunus.kernels.tables import (
     PriorTable,
     Proposals,
 )
-from prunus.model.arrays import Floats, Ints
 
 Column = TypeVar("Column", Ints, Floats)
 
