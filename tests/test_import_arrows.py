@@ -23,7 +23,7 @@ FLOORS = [
     },
     {"report", "evaluate", "simulate", "learn", "corrections"},
     {"pipeline", "intake"},
-    {"plausible"},
+    {"plausible", "method"},
     {"paper"},
     {"grown"},
     {"result"},

@@ -85,6 +85,18 @@ class Isolation(_Group):
     )
 
 
+class Growth(_Group):
+    """What grows on the votes (docs/growth.md)."""
+
+    gap_max: float = _number(
+        0.50, "-", "m", "gaps in the wood up to this are bridged; 0 bridges none", ge=0, le=3
+    )
+    branch_min: float = _number(0.07, "-", "m", "shorter branches are none", ge=0, le=3)
+    spur_min: float = _number(
+        0.12, "-", "m", "nor are shorter ones most of which looks like a spur", ge=0, le=3
+    )
+
+
 class Cover(_Group):
     """Superpoint selection."""
 
@@ -166,7 +178,7 @@ SCORES_NOTHING = (
 )
 
 GROUPS: dict[MethodName, tuple[str, ...]] = {
-    "default": _SHARED,
+    "default": (*_SHARED, "growth"),
     "paper": (
         *_SHARED, "superpoints", "confidence", "tips", "turn", "grow", "search", "side_branches",
     ),
@@ -192,6 +204,7 @@ class Parameters(_Group):
     )
     input: Input = Input()
     isolation: Isolation = Isolation()
+    growth: Growth = Growth()
     superpoints: Cover = Cover()
     confidence: Confidence = Confidence()
     tips: Tips = Tips()
@@ -342,9 +355,10 @@ def _check_removed(name: str, found: Any, kept: Any) -> None:
 
 def _foreign(group: str, method: MethodName) -> str:
     goes_by = ", ".join(GROUPS[method])
+    other = next(name for name, groups in GROUPS.items() if group in groups)
     return (
         f'the method "{method}" does not go by [{group}], but by {goes_by}; [{group}] is of '
-        'method = "paper"'
+        f'method = "{other}"'
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -33,6 +33,20 @@ def timed(seconds: Seconds, stage: str) -> Iterator[None]:
     before = seconds.get(stage, (0.0, 0.0))
     spent = time.process_time() - cpu, time.perf_counter() - wall
     seconds[stage] = (before[0] + spent[0], before[1] + spent[1])
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Found:
+    """What a method makes of a cloud: see the fields of `Result` of the same names."""
+
+    skeleton: Skeleton
+    graph: SeededGraph
+    warnings: list[str]
+    notes: list[str]
+    isolated: Isolated | None
+    told: Told | None = None
+    score: float | None = None
+    history: Floats = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True, eq=False)

@@ -69,9 +69,9 @@ def searched(draft: Draft, held: Held, graph: SeededGraph, params: Parameters, s
         return draft
     seeded = held_graph(draft, held, graph)
     # Here, since it takes a compiler.
-    from prunus.paper.chain import best_skeleton
+    from prunus.paper.chain import Search
 
-    found = best_skeleton(seeded, params, np.random.default_rng(seed), {}).skeleton
+    found = Search().best(seeded, params, np.random.default_rng(seed), {}).skeleton
     best = _draft_of(found, draft)
     for back in (_lost(best, draft, nodes), nodes):
         whole = _put_back(best, draft, back)
