@@ -20,20 +20,16 @@ from prunus.evaluate.curves import curve_measures
 from prunus.evaluate.found import branch_measures
 from prunus.geometry.near import within
 from prunus.io.clouds import write_cloud
-from prunus.kernels.axes import contract
-from prunus.kernels.frames import edge_images
 from prunus.kernels.neighbours import cover
-from prunus.kernels.profiles import edge_profiles
 from prunus.model import SeededGraph
+from prunus.paper.kernels.frames import edge_images
+from prunus.paper.networks import NetworkScorer
+from prunus.paper.population import search
+from prunus.paper.potential import path_priors
+from prunus.paper.score import graph_table
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
-from prunus.search import search, search_learned, shipped_score
-from prunus.search.potential import path_priors
-from prunus.search.score import graph_table
 from prunus.simulate import simulate_scan
-from prunus.stages.confidence import EdgeScorer, HandmadeScorer
-from prunus.stages.networks import NetworkScorer
-from prunus.stages.superpoints import GATHER, ROUNDS, THIN
 
 Row = tuple[str, float, str]
 RUNS = 7
@@ -60,7 +56,6 @@ def kernels() -> Iterator[Row]:
     yield "kernel within", cpu(lambda: within(xyz, under.xyz, under.radius)), "s"
     ends = (xyz, under.xyz, under.start, under.members, graph.edges, under.radius)
     yield "kernel edge_images", cpu(lambda: edge_images(*ends)), "s"
-    yield "kernel edge_profiles", cpu(lambda: edge_profiles(*ends)), "s"
     table, score, cost = graph_table(graph, PARAMS, np.random.default_rng(0))
     yield (
         "kernel turn_penalties",
@@ -69,21 +64,13 @@ def kernels() -> Iterator[Row]:
     )
     paths = cpu(lambda: path_priors(table, score, cost, graph.base, graph.tips))
     yield "kernel tip_paths", paths, "s"
-    thinned, size = cover(xyz, order, THIN)
-    drawn = cpu(lambda: contract(thinned, np.sqrt(size), GATHER, ROUNDS))
-    yield f"kernel contract, {len(thinned)} points", drawn, "s"
 
 
 def searches() -> Iterator[Row]:
     """The search on connected graphs with two edges a superpoint; growth with both sizes."""
-    tree = skeletonize(tree_scan(101)[1], tree_scan(101)[0].xyz[0]).graph
-    learned = cpu(lambda: search_learned(tree, shipped_score()))
-    yield f"search learned N={len(tree.xyz)} E={len(tree.edges)}", learned, "s"
     target = row_graph(250)
-    plain = PARAMS.changed("search", refine=False)
     size = f"N=250 E={len(target.edges)} T={len(target.tips)}"
     yield from _search_rows(f"search K=500 {size}", target, PARAMS)
-    yield from _search_rows("search K=500 N=250, without refining", target, plain)
     for nodes in (125, 500, 1000, 2000):
         graph = row_graph(nodes)
         yield from _search_rows(f"search K=500 N={nodes} T={len(graph.tips)}", graph, PARAMS)
@@ -171,76 +158,60 @@ def _child(words: list[object], environment: dict[str, str] | None = None, runs:
 
 
 def quality() -> Iterator[Row]:
-    """Mean score of five seeds at K = 500 against K = 5000, refined and as in the paper."""
-    for refine in (True, False):
-        ratios = []
-        for seed in range(100, 106):
-            means = []
-            for K in (500, 5000):
-                params = PARAMS.changed("search", K=K, refine=refine)
-                scores = [
-                    search(graph_of(seed), params, np.random.default_rng(s)).score for s in range(5)
-                ]
-                means.append(statistics.mean(scores))
-            ratios.append(means[0] / means[1])
-            name = "refined" if refine else "as in the paper"
-            yield f"score K=500 / K=5000, {name}, tree {seed}", ratios[-1], "ratio"
-        yield f"score K=500 / K=5000, {name}, mean", statistics.mean(ratios), "ratio"
+    """Mean score of five seeds at K = 500 against K = 5000."""
+    ratios = []
+    for seed in range(100, 106):
+        means = []
+        for K in (500, 5000):
+            params = PARAMS.changed("search", K=K)
+            scores = [
+                search(graph_of(seed), params, np.random.default_rng(s)).score for s in range(5)
+            ]
+            means.append(statistics.mean(scores))
+        ratios.append(means[0] / means[1])
+        yield f"score K=500 / K=5000, tree {seed}", ratios[-1], "ratio"
+    yield "score K=500 / K=5000, mean", statistics.mean(ratios), "ratio"
 
 
 def optimum() -> Iterator[Row]:
     """Share of the exhaustive optimum on 30 random graphs: 8 nodes, 11 edges, 7 tips."""
-    from tests.search.graphs import orchard, random_graph
+    from tests.paper.graphs import orchard, random_graph
 
     graphs = [random_graph(seed, nodes=8, edges=11, tips=7) for seed in range(30)]
     best = [orchard(graph, PARAMS).best()[1] for graph in graphs]
-    for refine in (True, False):
-        for K in (500, 5000):
-            params = PARAMS.changed("search", K=K, refine=refine)
-            shares = [
-                search(graph, params, np.random.default_rng(0)).score / top
-                for graph, top in zip(graphs, best, strict=True)
-                if top > 0
-            ]
-            name = f"optimum reached, K={K}, {'refined' if refine else 'as in the paper'}"
-            yield f"{name}, mean", statistics.mean(shares), "ratio"
-            yield f"{name}, worst", min(shares), "ratio"
+    for K in (500, 5000):
+        params = PARAMS.changed("search", K=K)
+        shares = [
+            search(graph, params, np.random.default_rng(0)).score / top
+            for graph, top in zip(graphs, best, strict=True)
+            if top > 0
+        ]
+        yield f"optimum reached, K={K}, mean", statistics.mean(shares), "ratio"
+        yield f"optimum reached, K={K}, worst", min(shares), "ratio"
 
 
-SCORERS = {
-    "cnn ours": NetworkScorer.shipped("ours"),
-    "cnn paper": NetworkScorer.shipped("paper"),
-    "handmade": HandmadeScorer(),
-}
-
-
-def scorers() -> Iterator[Row]:
-    """Curve measures with each scorer on twenty field scans, the target alone and the whole row."""
+def scores() -> Iterator[Row]:
+    """Curve measures of the paper's method on twenty field scans, the target alone and the row."""
     for what in ("target", "row"):
-        for name, scorer in SCORERS.items():
-            found = [_judged(seed, what, scorer) for seed in range(300, 320)]
-            for measure in found[0]:
-                values = [measures[measure] for measures in found]
-                yield f"{what}, {name}: {measure}", float(np.nanmean(values)), "ratio"
+        found = [_measured(seed, what) for seed in range(300, 320)]
+        for measure in found[0]:
+            values = [measures[measure] for measures in found]
+            yield f"{what}: {measure}", float(np.nanmean(values)), "ratio"
 
 
-def _judged(seed: int, what: str, scorer: EdgeScorer) -> dict[str, float]:
+def _measured(seed: int, what: str) -> dict[str, float]:
     scan = simulate_scan(seed)
     cloud = scan.target_cloud() if what == "target" else scan.cloud()
-    result = skeletonize(cloud, scan.truth.xyz[0], PARAMS, scorer=scorer)
+    result = skeletonize(cloud, scan.truth.xyz[0], PARAMS)
     found = curve_measures(result.skeleton, scan.truth)
     return found | branch_measures(result.skeleton, scan.truth)
 
 
-def networks() -> Iterator[Row]:
-    """CPU seconds of each scorer, images or context included, on the edges of one tree."""
+def network() -> Iterator[Row]:
+    """CPU seconds of the scorer, images included, on the edges of one tree."""
     candidates = graph_of(101).scored.candidates
-    for name, scorer in SCORERS.items():
-        yield (
-            f"scorer {name}, E={len(candidates.edges)}",
-            cpu(lambda: scorer(candidates)),  # noqa: B023 - called at once
-            "s",
-        )
+    scorer = NetworkScorer()
+    yield f"scorer, E={len(candidates.edges)}", cpu(lambda: scorer(candidates)), "s"
 
 
 CASES: dict[str, Callable[[], Iterator[Row]]] = {
@@ -250,6 +221,6 @@ CASES: dict[str, Callable[[], Iterator[Row]]] = {
     "cold": cold,
     "quality": quality,
     "optimum": optimum,
-    "networks": networks,
-    "scorers": scorers,
+    "network": network,
+    "scores": scores,
 }

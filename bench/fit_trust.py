@@ -20,10 +20,9 @@ from prunus.io.safely import write_bytes
 from prunus.learn.logistic import fit_odds
 from prunus.measure import branches
 from prunus.measure.odds import Odds
-from prunus.measure.trust import GrownModel, Model
-from prunus.measure.trust.evidence import Evidence
-from prunus.measure.trust.grown import of_branches, of_edges, of_tree
-from prunus.measure.trust.model import GROWN
+from prunus.measure.trust import Model, Parts
+from prunus.measure.trust.evidence import Evidence, of_branches, of_edges, of_tree
+from prunus.measure.trust.model import SHIPPED
 from prunus.model import Ints, Label
 
 RIDGE = 10.0
@@ -42,12 +41,12 @@ MOST_BRANCHES, MOST_EDGES = 200, 1000
 """No tree has more weight than so many of its branches of a label, or of its edges."""
 
 
-def fitted(some: list[Tried]) -> GrownModel:
+def fitted(some: list[Tried]) -> Model:
     """The model of what came of some scans."""
     whole = {name: _whole(name, some) for name in WHOLE}
     told = [one for one in some if one.meant and one.known and len(one.right)]
     form = [whole["form"](of_tree(one.known)) for one in told if one.known]
-    return GrownModel(_parts(told, form), whole)
+    return Model(_parts(told, form), whole)
 
 
 def _whole(name: str, some: list[Tried]) -> Odds:
@@ -61,7 +60,7 @@ def _only(names: tuple[str, ...], evidence: Evidence) -> Evidence:
     return {name: evidence[name] for name in names}
 
 
-def _parts(some: list[Tried], form: list[float]) -> Model:
+def _parts(some: list[Tried], form: list[float]) -> Parts:
     """The model of branches first, then that of edges, given those; form: of each tree."""
     rng = np.random.default_rng(0)
     told = [of_branches(one.known, known) for one, known in zip(some, form, strict=True)
@@ -82,7 +81,7 @@ def _parts(some: list[Tried], form: list[float]) -> Model:
         taken = _some(rng, np.arange(len(every)), MOST_EDGES)
         edges += [every[row] for row in taken]
         unchanged.append(one.unchanged[taken])
-    return Model(branch, fit_odds(edges, np.concatenate(unchanged), RIDGE, SIGNS))
+    return Parts(branch, fit_odds(edges, np.concatenate(unchanged), RIDGE, SIGNS))
 
 
 def _labels(one: Tried) -> Ints:
@@ -114,7 +113,7 @@ def main() -> None:
     model = fitted(list(examples(chosen.trees, chosen.others, chosen.cache)))
     print(model.to_toml())
     if chosen.write:
-        write_bytes(GROWN, model.to_toml().encode())
+        write_bytes(SHIPPED, model.to_toml().encode())
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ from functools import cache
 
 import numpy as np
 
-from prunus.kernels.forest import spanning_forest
 from prunus.model import (
     CandidateGraph,
     Floats,
@@ -17,16 +16,16 @@ from prunus.model import (
     Skeleton,
     Superpoints,
 )
+from prunus.paper.candidates import find_candidates
+from prunus.paper.confidence import score_edges
+from prunus.paper.kernels.forest import spanning_forest
+from prunus.paper.networks import NetworkScorer
+from prunus.paper.seeds import find_seeds
+from prunus.paper.superpoints import find_superpoints
 from prunus.params import Parameters
 from prunus.simulate import simulate_scan
-from prunus.stages.candidates import find_candidates
-from prunus.stages.confidence import HandmadeScorer, hopeful, score_edges
-from prunus.stages.seeds import find_seeds
-from prunus.stages.superpoints import find_superpoints
 
-OLD = Parameters.parse(Parameters.learned().model_dump() | {"method": "paper"})
-PARAMS = OLD.changed("superpoints", place="random")
-"""The population-based search on superpoints at random, refined."""
+PARAMS = Parameters.paper()
 SPACING = 1.2
 """Distance of the trees of a row, metres: near enough to grow into each other."""
 
@@ -69,7 +68,7 @@ def row_graph(nodes: int, edges_per_node: float = 2.0, seed: int = 100) -> Seede
     trees = 2 + nodes // 150
     scans = [tree_scan(seed + k, 30_000) for k in range(trees)]
     points = [xyz + np.array([k * SPACING, 0, 0]) for k, (_, xyz) in enumerate(scans)]
-    scored = _scored(np.concatenate(points), np.random.default_rng(seed), floor=0.0)
+    scored = _scored(np.concatenate(points), np.random.default_rng(seed))
     under = scored.candidates.superpoints
     foot = under.cloud.to_input.inverse().apply(scans[0][0].xyz[0])
     base = int(np.linalg.norm(under.xyz - foot, axis=1).argmin())
@@ -84,7 +83,7 @@ def row_graph(nodes: int, edges_per_node: float = 2.0, seed: int = 100) -> Seede
     cloud = PointCloud(under.xyz[kept], under.cloud.to_input)
     own = Superpoints.of_nodes(cloud, under.radius)
     graph = ScoredGraph.of_confidence(
-        CandidateGraph(own, row_of[scored.edges[chosen]]), scored.confidence[chosen], "handmade"
+        CandidateGraph(own, row_of[scored.edges[chosen]]), scored.confidence[chosen], "cnn"
     )
     return find_seeds(graph, PARAMS, cloud.xyz[row_of[base]])[0]
 
@@ -105,10 +104,6 @@ def _nearest(scored: ScoredGraph, base: int, count: int) -> Ints:
     return np.array(order[:count])
 
 
-def _scored(
-    points: Floats, rng: np.random.Generator, floor: float = PARAMS.confidence.floor
-) -> ScoredGraph:
+def _scored(points: Floats, rng: np.random.Generator) -> ScoredGraph:
     superpoints = find_superpoints(PointCloud.from_xyz(points), PARAMS.superpoints, rng)
-    confidence = PARAMS.changed("confidence", floor=floor).confidence
-    scored = score_edges(find_candidates(superpoints), HandmadeScorer())
-    return hopeful(scored, HandmadeScorer(), confidence)
+    return score_edges(find_candidates(superpoints), NetworkScorer())

@@ -44,11 +44,7 @@ def _skeletonized(cloud: PointCloud, base: Floats | None, params: Parameters) ->
     return Found(result.skeleton, every if result.isolated is None else result.isolated.target)
 
 
-def _learned(cloud: PointCloud, base: Floats | None) -> Found:
-    return _skeletonized(cloud, base, Parameters.learned())
-
-
-METHODS: dict[str, Method] = {"default": _default, "paper": _paper, "learned": _learned}
+METHODS: dict[str, Method] = {"default": _default, "paper": _paper}
 
 
 def method_of(name: str) -> Method:

@@ -18,7 +18,7 @@ import numpy as np
 from bench.trust_cases import FORMS, HELD_OUT, KINDS, SETS, Tried, all_tried
 from prunus.learn.tables import calibration_error
 from prunus.measure import Branch, branches
-from prunus.measure.trust import WOOD, Trust, trust_in_grown
+from prunus.measure.trust import WOOD, Trust, trust_in
 from prunus.measure.trust.review import FORM, MEANT, review_of, whole_review
 from prunus.model import Bools, Floats, Label
 from prunus.plausible import LEAST_WOOD
@@ -28,7 +28,7 @@ Pair = tuple[Tried, Trust]
 
 def trusted(some: Iterable[Tried]) -> list[Pair]:
     """Those of which anything is known, with the trust in them."""
-    return [(one, trust_in_grown(one.known)) for one in some if one.known is not None]
+    return [(one, trust_in(one.known)) for one in some if one.known is not None]
 
 
 def lines_of(some: list[Pair]) -> Iterator[str]:

@@ -21,7 +21,7 @@ from bench.shapes import HABITS, scanned
 from prunus.errors import PrunusError
 from prunus.evaluate.right import right_branches, right_edges, well_placed_branches
 from prunus.io.safely import write_bytes
-from prunus.measure.trust import KnownGrown
+from prunus.measure.trust import Known
 from prunus.model import Bools, Floats, PointCloud
 from prunus.pipeline import follow
 from prunus.result import Result
@@ -49,7 +49,7 @@ class Tried:
     """
 
     name: str
-    known: KnownGrown | None
+    known: Known | None
     right: Bools
     unchanged: Bools
     meant: bool
@@ -74,7 +74,7 @@ def _tried(name: str, seed: int, cache: Path) -> Tried:
     if result is None or result.told is None or len(result.in_house) < 3:
         return Tried(name=name, known=None, right=nothing, unchanged=nothing, meant=False,
                      wood=name not in KINDS, form=name in SETS)  # fmt: skip
-    known = KnownGrown(result.in_house, result.told)
+    known = Known(result.in_house, result.told)
     if case is None:
         return Tried(name=name, known=known, right=nothing, unchanged=nothing, meant=True,
                      wood=name not in KINDS, form=False)  # fmt: skip

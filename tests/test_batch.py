@@ -221,7 +221,7 @@ LONG = {
     "cuts": ("tree.ply", "cuts {in}/tree.ply", signal.SIGHUP),
     "fuse": ("rig.json", "fuse {in} -o {out}/a.ply", signal.SIGTERM),
     "simulate": (".prunus-", "simulate -n 3 --jobs 2 -o {out}", signal.SIGTERM),
-    "experiment": ("ours.onnx", "experiment --trees 2 --jobs 2 -o {out}", signal.SIGINT),
+    "experiment": ("paper.onnx", "experiment --trees 2 --jobs 2 -o {out}", signal.SIGINT),
     "train": ("scan.ply", "train {in} --jobs 2 -o {out}/a.onnx", signal.SIGTERM),
 }
 """Commands: the file at which each is held up, its words, and the signal that it then gets."""

@@ -442,7 +442,6 @@ def test_an_orchard_is_written_tree_by_tree(tmp_path: Path) -> None:
     ("given", "said"),
     [
         ([], "no folder to learn from"),
-        (["--network", "isolation"], "no folder to learn from"),
         (["--recipe", "mine.toml"], "--recipe: of no use with --network edges"),
         (["--network", "field", "--epochs", 3], "stand in its recipe"),
         (["--network", "field", "--seed", 3], "stand in its recipe"),
@@ -474,28 +473,33 @@ def test_weights_that_are_none_fail_with_their_name(scan: Path, tmp_path: Path) 
     assert "bad.onnx: not an ONNX file" in done.output
 
 
-@pytest.mark.parametrize(
-    "words", [["--scorer", "handmade", "--params", "paper.toml"], ["--params", "paper.toml"]]
-)
-def test_other_scorers_can_be_asked_for(words: list[str], scan: Path, tmp_path: Path) -> None:
+def test_parameters_of_the_paper_come_from_a_file(scan: Path, tmp_path: Path) -> None:
     (tmp_path / "paper.toml").write_text('method = "paper"\n[search]\nK = 20\n')
-    asked = [tmp_path / word if word.endswith(".toml") else word for word in words]
-    assert prunus("skeletonize", scan, "-o", tmp_path / "out", *FAST, *asked).exit_code == 0
+    words = ["-o", tmp_path / "out", *FAST, "--params", tmp_path / "paper.toml"]
+    assert prunus("skeletonize", scan, *words).exit_code == 0
 
 
-SHIPPED_NET = Path(prunus_package.__file__).parent / "weights" / "ours.onnx"
+@pytest.mark.parametrize("given", ["learned", "old.toml"])
+def test_the_method_that_is_gone_is_said_to_be(given: str, scan: Path, tmp_path: Path) -> None:
+    (tmp_path / "old.toml").write_text('[search]\nscore = "learned"\n')
+    named = tmp_path / given if given.endswith(".toml") else given
+    done = prunus("skeletonize", scan, "--params", named)
+    assert done.exit_code == 2
+    assert "found 'learned', the method of prunus 0.1, which is gone" in done.output.replace(
+        "\n", " "
+    )
+
+
+SHIPPED_NET = Path(prunus_package.__file__).parent / "weights" / "paper.onnx"
 
 
 @pytest.mark.parametrize("command", ["skeletonize", "cuts"])
-@pytest.mark.parametrize("words", [["--scorer", "cnn"], ["--weights", SHIPPED_NET]])
 def test_what_the_method_has_no_use_for_is_refused(
-    command: str, words: list[object], scan: Path, tmp_path: Path
+    command: str, scan: Path, tmp_path: Path
 ) -> None:
-    if command == "cuts" and words[0] == "--scorer":
-        pytest.skip("cuts has no --scorer")
-    done = prunus(command, scan, *words)
+    done = prunus(command, scan, "--weights", SHIPPED_NET)
     assert done.exit_code == 2
-    assert f"{words[0]}: of no use to the method" in done.output.replace("\n", " ")
+    assert "--weights: of no use to the method" in done.output.replace("\n", " ")
 
 
 def test_a_group_of_another_method_is_refused_with_its_method(scan: Path, tmp_path: Path) -> None:

@@ -17,8 +17,8 @@ from prunus.io.skeletons import read_record, read_skeleton, sha256_of, write_ske
 from prunus.io.swc import write_swc
 from prunus.measure.cuts import shipped_rules
 from prunus.model import FRAMES, RigidMotion
+from prunus.paper.confidence import ConstantScorer
 from prunus.params import Parameters
-from prunus.stages.confidence import HandmadeScorer
 from tests.conftest import simulated
 from tests.measure.cuts.trees import drawn
 from tests.test_cli import prunus
@@ -59,7 +59,7 @@ def test_a_cloud_is_skeletonized_as_it_was_asked_for(plan: PlanFile, folder: Pat
     fewer, paper = (
         params.changed("input", points=5000) for params in (Parameters(), Parameters.paper())
     )
-    asked = [(fewer, 0, None), (fewer, 1, None), (paper, 1, None), (paper, 1, HandmadeScorer())]
+    asked = [(fewer, 0, None), (fewer, 1, None), (paper, 1, None), (paper, 1, ConstantScorer(0.9))]
     found = [plan] + [
         cut_file(Source(path, base, params=params, seed=seed, scorer=scorer), RULES)
         for params, seed, scorer in asked

@@ -19,8 +19,8 @@ import prunus
 from prunus import Parameters, PointCloud, PrunusError, Skeleton, search_graph, skeletonize
 from prunus.measure import branches
 from prunus.model import CandidateGraph, RigidMotion
+from prunus.paper.confidence import ConstantScorer
 from prunus.pipeline import follow
-from prunus.stages.confidence import ConstantScorer
 from tests.conftest import simulated
 
 
@@ -52,7 +52,6 @@ class Own:
 
     gives: Callable[[int], Any]
     name: Any = "own"
-    floor: Any = 0.0
 
     def __call__(self, candidates: CandidateGraph) -> Any:
         return self.gives(len(candidates.edges))
@@ -122,16 +121,12 @@ def test_categories_that_are_none_are_refused(gives: Callable[[int], Any], says:
 @pytest.mark.parametrize(
     ("scorer", "says"),
     [
-        (lambda candidates: half(len(candidates.edges)), "function has no name, no floor"),
+        (lambda candidates: half(len(candidates.edges)), "function has no name"),
         (ConstantScorer, "the class ConstantScorer; expected an object of it"),
-        (0.5, "float has no name, no floor"),
+        (0.5, "float has no name"),
         ("cnn", "str has no name"),
         (object(), "object has no name"),
         (Own(half, name=None), "its name is None; expected text"),
-        (Own(half, floor="low"), "floor: text; expected numbers"),
-        (Own(half, floor=np.nan), "floor nan; expected 0 to less than 1"),
-        (Own(half, floor=1.0), "floor 1.0; expected 0 to less than 1"),
-        (Own(half, floor=[0.1, 0.2]), "floor: shape"),
     ],
 )
 def test_what_is_no_scorer_is_refused(scorer: Any, says: str) -> None:

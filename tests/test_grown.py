@@ -107,13 +107,20 @@ def test_each_parameter_that_is_shown_changes_some_result() -> None:
     ]
     other = {
         ("input", "points"): 20_000,
-        ("input", "draw"): "space",
         ("isolation", "isolate"): "never",
         ("isolation", "raw_from"): 0.95,
+        ("growth", "gap_max"): 0.0,
+        ("growth", "branch_min"): 0.6,
     }
-    assert set(shown) == set(other)
+    assert set(shown) == {*other, ("growth", "spur_min")}
     for (group, key), value in other.items():
         again = skeletonize(row, [0, 0, 0], Parameters().changed(group, **{key: value}))
         same = np.array_equal(again.skeleton.xyz, first.skeleton.xyz)
         whole = (again.isolated is None) == (first.isolated is None)
         assert not (same and whole), f"{group}.{key}"
+
+
+def test_shorter_spurs_are_none_when_it_is_asked_for() -> None:
+    cloud = simulated(4)[1]
+    few = Parameters().changed("growth", spur_min=0.5)
+    assert len(skeletonize(cloud, params=few).skeleton) < len(skeletonize(cloud).skeleton)

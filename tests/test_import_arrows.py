@@ -22,10 +22,12 @@ FLOORS = [
         "schemas",
     },
     {"report", "evaluate", "simulate", "learn", "corrections"},
-    {"pipeline", "graphs", "intake"},
-    {"plausible", "grown", "searched"},
+    {"pipeline", "intake"},
+    {"plausible", "method"},
+    {"paper"},
+    {"grown"},
     {"result"},
-    {"sensing", "search", "stages", "measure", "io", "field", "growth"},
+    {"sensing", "measure", "io", "field", "growth"},
     {"rules", "grammar", "params", "kernels", "geometry", "networks"},
     {"model", "reading"},
     {"workers"},
@@ -38,8 +40,6 @@ SAME_FLOOR = {
     ("cli", "cli"),
     ("io", "measure"),
     ("rules", "grammar"),
-    ("stages", "measure"),
-    ("sensing", "stages"),
     ("growth", "field"),
 }
 """Neighbours on one floor that may be used. No side room knows another."""
@@ -67,6 +67,12 @@ def room_of(path: Path) -> str:
 def test_every_room_stands_on_a_floor() -> None:
     rooms = {room_of(path) for path in HOME.rglob("*.py")} - {"__init__"}
     assert rooms == set().union(*FLOORS)
+
+
+def test_the_default_knows_nothing_of_the_papers_method() -> None:
+    for room in ("grown", "field", "growth", "result"):
+        for path in [*HOME.glob(f"{room}/**/*.py"), *HOME.glob(f"{room}.py")]:
+            assert not imports(path) & {"paper", "kernels"}, path
 
 
 def test_arrows_go_down_only() -> None:

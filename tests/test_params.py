@@ -1,5 +1,6 @@
 """Parameters: one place, read and written, typos refused."""
 
+import json
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -25,8 +26,7 @@ def test_the_papers_parameters_are_as_in_the_paper() -> None:
 def test_what_is_written_reads_back(tmp_path: Path) -> None:
     for params in (
         Parameters().changed("input", points="all"),
-        Parameters.paper().changed("search", K=77, refine=False).changed("input", points="all"),
-        Parameters.learned(),
+        Parameters.paper().changed("search", K=77).changed("input", points="all"),
     ):
         (tmp_path / "p.toml").write_text(params.to_toml())
         assert Parameters.from_toml(tmp_path / "p.toml") == params
@@ -46,7 +46,7 @@ def test_any_value_reads_back_exactly(r: float, K: int) -> None:
     [
         (
             "[superpoints]\nr_sper = 0.1",
-            "superpoints.r_sper: unknown parameter.*min_points, place, r_super",
+            "superpoints.r_sper: unknown parameter.*min_points, r_super",
         ),
         ("[serch]\nK = 1", "serch: unknown parameter; expected one of confidence"),
         ("[search]\nK = 0", "search.K: input should be greater than or equal to 1; found 0"),
@@ -61,8 +61,6 @@ def test_any_value_reads_back_exactly(r: float, K: int) -> None:
             "superpoints.r_super: .* greater than or equal to 0.01",
         ),
         ("[superpoints]\nr_super = 1e300", "superpoints.r_super: .* less than or equal to 1"),
-        ("[superpoints]\nalong = 0", "superpoints.along: .* greater"),
-        ("[superpoints]\nacross = -1", "superpoints.across: .* greater"),
         ("[confidence]\nalpha_conf = 0.9999999999999999", "confidence.alpha_conf: .* 0.99"),
         ("[search]\nK = 1000000000", "search.K: .* less than or equal to 100000"),
         ("[turn]\np = inf", "turn.p: .*finite"),
@@ -119,29 +117,70 @@ def test_a_group_of_another_method_is_refused_by_its_name(group: str) -> None:
         Parameters.parse({group: {}})
 
 
-def older(method: str) -> dict[str, Any]:
-    """All parameters, as files had them before there was `method`."""
-    params = Parameters.parse({"method": method}).model_dump()
-    del params["method"]
-    params["search"]["score"] = method
-    return params
+OLDER: dict[str, dict[str, Any]] = {
+    "input": {"points": 50_000, "draw": "points"},
+    "isolation": {"isolate": "never"},
+    "superpoints": {"r_super": 0.1, "place": "random", "along": 0.08, "across": 0.04},
+    "confidence": {"alpha_conf": 0.4, "floor": 0.0, "edge_net": "paper"},
+    "search": {"K": 500, "refine": False},
+    "leaders": {"min_length": 0.0},
+    "side_branches": {"turn_max": 1.5707963267948966, "several": False, "min_length": 0.1},
+}
+"""What files of 0.1 named of the paper's method, with what it had always."""
 
 
-@pytest.mark.parametrize("method", ["learned", "paper"])
-def test_a_file_from_before_there_was_a_method_is_read_as_it_was_meant(method: str) -> None:
-    assert Parameters.parse(older(method)) == Parameters.parse({"method": method})
+@pytest.mark.parametrize("named", [{"method": "paper"}, {}])
+def test_a_file_of_01_with_the_papers_method_is_read_in_silence(named: dict[str, str]) -> None:
+    search = OLDER["search"] | ({} if named else {"score": "paper"})
+    assert Parameters.parse(OLDER | named | {"search": search}) == Parameters.paper()
 
 
-def test_what_an_older_file_does_not_name_is_as_it_was_then() -> None:
-    params = Parameters.parse({"search": {"score": "paper"}})
-    then = Parameters.learned().model_dump() | {"method": "paper"}
-    assert params == Parameters.parse(then)
-    assert (params.input.points, params.superpoints.place) == (50_000, "axes")
+@pytest.mark.parametrize(
+    ("values", "where"),
+    [
+        ({"method": "learned"}, "method"),
+        ({"method": "learned", "input": {"points": 9}}, "method"),
+        ({"search": {"score": "learned", "K": 500}}, "search.score"),
+    ],
+)
+def test_the_method_that_is_gone_is_said_to_be(values: dict[str, Any], where: str) -> None:
+    gone = f"params: {where}: found 'learned', the method of prunus 0.1, which is gone since 0.2"
+    with pytest.raises(PrunusError, match=f'{gone}; expected method = "default"'):
+        Parameters.parse(values)
+    assert Parameters.of_record(values, "tree.json") == Parameters()
 
 
-def test_a_score_that_is_none_any_more_is_refused() -> None:
-    with pytest.raises(PrunusError, match=r"search\.score: found 'growth'; expected no"):
-        Parameters.parse({"search": {"score": "growth"}})
+@pytest.mark.parametrize(
+    ("group", "key", "value"),
+    [
+        ("input", "draw", "space"),
+        ("superpoints", "place", "axes"),
+        ("confidence", "floor", "auto"),
+        ("confidence", "floor", False),
+        ("confidence", "edge_net", "ours"),
+        ("search", "refine", True),
+        ("search", "refine", 0),
+        ("search", "score", "growth"),
+        ("leaders", "min_length", 0.35),
+        ("side_branches", "several", True),
+    ],
+)
+def test_what_is_gone_is_named_with_its_file(
+    group: str, key: str, value: object, tmp_path: Path
+) -> None:
+    path = tmp_path / "old.toml"
+    path.write_text(f'method = "paper"\n[{group}]\n{key} = {json.dumps(value)}\n')
+    with pytest.raises(
+        PrunusError, match=rf"old.toml: {group}\.{key}: found .*gone since 0.2; leave"
+    ):
+        Parameters.from_toml(path)
+
+
+def test_parameters_stored_beside_a_result_are_those_of_its_method() -> None:
+    paper = Parameters.paper().changed("search", K=9)
+    assert Parameters.of_record(paper.model_dump(), "tree.json") == paper
+    with pytest.raises(PrunusError, match=r"tree\.json: serch: unknown parameter"):
+        Parameters.of_record({"serch": {}}, "tree.json")
 
 
 @pytest.mark.parametrize("method", ["nought", ["paper"], 5])

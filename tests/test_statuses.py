@@ -34,7 +34,7 @@ BROKEN_INPUT = [
     "cuts bad.json", "cuts bad.swc", "convert bad.json t.swc", "convert bad.swc t.ply",
     "evaluate bad.json s.json", "evaluate s.json bad.json", "fuse rig -o t.ply",
     "skeletonize empty", "studio empty", "train empty -o w.onnx", "evaluate empty empty",
-    "train empty -o w.onnx --network isolation", "fuse empty -o t.ply",
+    "fuse empty -o t.ply",
 ]  # fmt: skip
 MISSING_FILE_OF_AN_OPTION = [
     "skeletonize cloud.xyz --params none.toml", "skeletonize cloud.xyz --weights none.onnx",
@@ -44,7 +44,6 @@ MISSING_FILE_OF_AN_OPTION = [
     "convert s.json t.mcap --cloud none.ply", "convert s.json t.mcap --cuts none.json",
     "studio cloud.xyz --params none.toml", "train orchard -o w.onnx --from none.onnx",
     "train orchard -o w.onnx --scans none", "experiment -o e --gold none",
-    "train orchard -o w.onnx --network isolation --from none.onnx",
     "experiment -o e --gold empty --scans none",
 ]  # fmt: skip
 BROKEN_FILE_OF_AN_OPTION = [
@@ -56,7 +55,6 @@ BROKEN_FILE_OF_AN_OPTION = [
     "convert s.json t.mcap --cloud bad.xyz", "convert s.json t.mcap --cuts bad.json",
     "studio cloud.xyz --params bad.toml", "train orchard -o w.onnx --from bad.json",
     "experiment -o e --gold empty", "experiment -o e --gold bad.json",
-    "train orchard -o w.onnx --network isolation --from bad.json",
 ]  # fmt: skip
 BAD_VALUE = [
     "simulate -o e --scan any --views",

@@ -12,25 +12,25 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from prunus.errors import PrunusError as PrunusError
-    from prunus.graphs import GraphSkeleton as GraphSkeleton
-    from prunus.graphs import search_graph as search_graph
     from prunus.intake import read_cloud as read_cloud
     from prunus.io.skeletons import read_skeleton as read_skeleton
     from prunus.io.skeletons import write_skeleton as write_skeleton
     from prunus.model import Label as Label
     from prunus.model import PointCloud as PointCloud
     from prunus.model import Skeleton as Skeleton
+    from prunus.paper.confidence import EdgeScorer as EdgeScorer
+    from prunus.paper.graphs import GraphSkeleton as GraphSkeleton
+    from prunus.paper.graphs import search_graph as search_graph
     from prunus.params import Parameters as Parameters
     from prunus.pipeline import skeletonize as skeletonize
     from prunus.result import Result as Result
     from prunus.schemas import schema as schema
-    from prunus.stages.confidence import EdgeScorer as EdgeScorer
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOME = {
-    "EdgeScorer": "prunus.stages.confidence",
-    "GraphSkeleton": "prunus.graphs",
+    "EdgeScorer": "prunus.paper.confidence",
+    "GraphSkeleton": "prunus.paper.graphs",
     "Label": "prunus.model",
     "Parameters": "prunus.params",
     "PointCloud": "prunus.model",
@@ -40,7 +40,7 @@ _HOME = {
     "read_cloud": "prunus.intake",
     "read_skeleton": "prunus.io.skeletons",
     "schema": "prunus.schemas",
-    "search_graph": "prunus.graphs",
+    "search_graph": "prunus.paper.graphs",
     "skeletonize": "prunus.pipeline",
     "write_skeleton": "prunus.io.skeletons",
 }

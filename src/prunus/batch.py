@@ -35,7 +35,7 @@ from prunus.result import Result, Seconds, timed
 from prunus.workers import side_by_side
 
 if TYPE_CHECKING:
-    from prunus.stages.confidence import EdgeScorer
+    from prunus.paper.confidence import EdgeScorer
 
 Record = dict[str, Any]
 """What `--json` prints of one tree: a `TreeRecord`."""
@@ -43,15 +43,14 @@ Record = dict[str, Any]
 
 @dataclass(frozen=True)
 class Options:
-    """How every file of a batch is treated."""
+    """How every file of a batch is treated; `scorer` is for the paper's method alone."""
 
     base: tuple[float, float, float] | None = None
     frame: str = "auto"
     unit: str | None = None
     params: Parameters = field(default_factory=Parameters)
     seed: int = 0
-    scorer: str | None = None
-    weights: Path | None = None
+    scorer: EdgeScorer | None = None
     report: bool = True
     traits: bool = False
 
@@ -119,7 +118,7 @@ def _compiles(params: Parameters) -> bool:
         return False
     from prunus.kernels.compiled import is_compiled
 
-    return not is_compiled(_mode(params))
+    return not is_compiled(params.method)
 
 
 def _mark_compiled(params: Parameters) -> None:
@@ -127,12 +126,7 @@ def _mark_compiled(params: Parameters) -> None:
     if params.method != "default":
         from prunus.kernels.compiled import mark_compiled
 
-        mark_compiled(_mode(params))
-
-
-def _mode(params: Parameters) -> str:
-    """The choices on which it depends which kernels are run."""
-    return f"{params.superpoints.place} {params.confidence.edge_net} {params.method}"
+        mark_compiled(params.method)
 
 
 def attempt(task: Task, options: Options) -> Record:
@@ -154,8 +148,8 @@ def do(task: Task, options: Options) -> Record:
     seconds: Seconds = {}
     with timed(seconds, "read"):
         scan = open_scan(task.path, options.frame, options.unit)
-    scorer = scorer_of(options)
-    result = skeletonize(scan.cloud, options.base, options.params, options.seed, scorer)
+    given = options.base, options.params, options.seed, options.scorer
+    result = skeletonize(scan.cloud, *given)
     seconds |= result.seconds
     with timed(seconds, "refine"):
         _ = result.refined
@@ -165,19 +159,6 @@ def do(task: Task, options: Options) -> Record:
     with timed(seconds, "write"):
         notes = write_all(task.folder, result, scan, options)
     return _record(task, result, scan, seconds, notes)
-
-
-def scorer_of(options: Options) -> EdgeScorer | None:
-    """The edge scorer that the options ask for; None: that of the method, which may have none."""
-    if options.scorer == "handmade":
-        from prunus.stages.confidence import HandmadeScorer
-
-        return HandmadeScorer()
-    if options.weights is not None:
-        from prunus.stages.networks import NetworkScorer
-
-        return NetworkScorer(options.weights)
-    return None
 
 
 SOMETIMES = (

@@ -16,9 +16,9 @@ from prunus.ending import end_on_signals
 from prunus.errors import OptionError, PrunusError, Status, blaming_the_command, describe
 
 if TYPE_CHECKING:
+    from prunus.paper.networks import NetworkScorer
     from prunus.params import Parameters
     from prunus.progress import Waiting
-    from prunus.stages.networks import NetworkScorer
 
 
 class Prunus(TyperGroup):
@@ -95,26 +95,11 @@ class ScanKind(StrEnum):
     FIELD = "field"
 
 
-class Scorer(StrEnum):
-    """Who gives the edge confidence."""
-
-    CNN = "cnn"
-    HANDMADE = "handmade"
-
-
 class Network(StrEnum):
     """What can be learned."""
 
     EDGES = "edges"
-    ISOLATION = "isolation"
     FIELD = "field"
-
-
-class EdgeNet(StrEnum):
-    """Edge networks."""
-
-    OURS = "ours"
-    PAPER = "paper"
 
 
 Place = tuple[float, float, float]
@@ -201,10 +186,6 @@ def skeletonize(
     points: Points = None,
     params: ParamsFile = None,
     seed: Seed = 0,
-    scorer: Annotated[
-        Scorer | None,
-        typer.Option(help="Who gives the edge confidence in the paper's method. [default: cnn]"),
-    ] = None,
     weights: Weights = None,
     no_isolate: NoIsolate = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.html.")] = False,
@@ -231,13 +212,11 @@ def skeletonize(
     """
     from prunus.batch import Options, plan
 
-    if _network(weights) and scorer == Scorer.HANDMADE:
-        raise OptionError("--weights: of no use with --scorer handmade; expected one of them")
     options = Options(
         base, frame.value, unit and unit.value, _parameters(params, points, no_isolate), seed,
-        scorer and scorer.value, weights, not no_report, traits,
+        _network(weights), not no_report, traits,
     )  # fmt: skip
-    _check_use(options.params, {"--scorer": scorer, "--weights": weights})
+    _check_use(options.params, weights)
     tasks, failed = plan(clouds, output)
     _report(ctx.obj, tasks, failed, options, json, jobs)
 
@@ -328,7 +307,7 @@ def cuts(
         source, base, frame.value, unit and unit.value, scans,
         _parameters(params, points, no_isolate), seed, _network(weights),
     )  # fmt: skip
-    _check_use(wanted.params, {"--weights": weights})
+    _check_use(wanted.params, weights)
     with blaming_the_command():
         by = shipped_rules() if rules is None else CutRules.from_toml(rules)
         wanted.check()
@@ -510,17 +489,14 @@ def train(
     ] = None,
     network: Annotated[
         Network,
-        typer.Option(help="edges: their confidence; isolation: one tree out; field: of points."),
+        typer.Option(help="edges: those of the paper's method; field: of points."),
     ] = Network.EDGES,
-    edge_net: Annotated[
-        EdgeNet, typer.Option(help="paper: Appendix A; ours: edges in context.")
-    ] = EdgeNet.OURS,
     start: Annotated[
         str | None,
         typer.Option(
             "--from",
-            help="Go on from: ours, paper, shipped (field), a file, scratch. "
-            "[default: ours with labels]",
+            help="Go on from: paper, shipped (field), a file, scratch. "
+            "[default: paper with labels]",
         ),
     ] = None,
     scans: Scans = None,
@@ -553,17 +529,10 @@ def train(
     if not folders:
         raise OptionError("no folder to learn from: expected simulated scans, or the studio's")
     waiting.doing("loading torch", at_once=True)
-    from prunus.learn.school import Course, isolation_school, lines_of, school
+    from prunus.learn.school import Course, lines_of, school
 
-    course = Course(edge_net.value, start, seed, epochs, scans)
-    teach = isolation_school if network == Network.ISOLATION else school
-    report = teach(folders, output, course, jobs, waiting.watch)
-    if network == Network.ISOLATION:
-        kept, removed = report["test"]
-        found = f"test trees: {kept:.1%} of the points kept, {removed:.1%} of all others out"
-        waiting.tell([found])
-    else:
-        waiting.tell(lines_of(report))
+    course = Course(start, seed, epochs, scans)
+    waiting.tell(lines_of(school(folders, output, course, jobs, waiting.watch)))
 
 
 def _field_trained(
@@ -730,7 +699,7 @@ def _network(weights: Path | None) -> NetworkScorer | None:
     """A network of one's own; OptionError where it is none, before anything is done."""
     if weights is None:
         return None
-    from prunus.stages.networks import NetworkScorer
+    from prunus.paper.networks import NetworkScorer
 
     network = NetworkScorer(weights)
     with blaming_the_command():
@@ -738,22 +707,21 @@ def _network(weights: Path | None) -> NetworkScorer | None:
     return network
 
 
-def _check_use(params: Parameters, given: dict[str, object]) -> None:
-    """Raise OptionError where an option that was given is of no use to the method."""
+def _check_use(params: Parameters, weights: Path | None) -> None:
+    """Raise OptionError where weights were given that are of no use to the method."""
     from prunus.params import SCORES_NOTHING
 
-    for option, value in given.items():
-        if value is not None and params.method == "default":
-            raise OptionError(f"{option}: {SCORES_NOTHING}")
+    if weights is not None and params.method == "default":
+        raise OptionError(f"--weights: {SCORES_NOTHING}")
 
 
 def _parameters(path: Path | None, points: str | None, no_isolate: bool) -> Parameters:
-    from prunus.params import GROUPS, Parameters
+    from prunus.params import GONE, GROUPS, Parameters
 
     with blaming_the_command():
         if path is None:
             params = Parameters()
-        elif str(path) in GROUPS and not path.exists():
+        elif str(path) in (*GROUPS, GONE) and not path.exists():
             params = Parameters(method=str(path))
         else:
             params = Parameters.from_toml(path)

@@ -28,7 +28,7 @@ from prunus.pipeline import skeletonize
 from prunus.result import REFINED_WITH
 
 if TYPE_CHECKING:
-    from prunus.stages.confidence import EdgeScorer
+    from prunus.paper.confidence import EdgeScorer
 
 SKELETONS = (".json", ".swc")
 OWN = 0.06

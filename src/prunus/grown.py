@@ -1,4 +1,4 @@
-"""The chain that votes and grows: a cloud in, the tree at which the scanner looks and its evidence.
+"""Vote and grow, the parts of the default: votes as evidence, and the tree that grows on them.
 
 Voxels, the point field without wires, votes for the axes of branches, growth from the feet of all
 trees in view.
@@ -6,6 +6,7 @@ trees in view.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,12 +16,18 @@ from prunus.field.network import see_field
 from prunus.field.votes import PointField, Threads, gather_votes
 from prunus.field.voxels import Voxels, voxels_of
 from prunus.field.wires import without_wires
+from prunus.growth.branches import Grown as Branches
+from prunus.growth.branches import cut_branches
 from prunus.growth.evidence import seeded_graph
-from prunus.growth.grow import Orchard
+from prunus.growth.graph import ThreadGraph, join_threads
+from prunus.growth.grow import Choose, Cut, Orchard
+from prunus.growth.parents import choose_parents
 from prunus.growth.told import told_of
-from prunus.model import Floats, Ints, Kind, PointCloud, SeededGraph, Skeleton, Told, parents_first
+from prunus.growth.ways import Ways
+from prunus.measure import remarks
+from prunus.model import Floats, Ints, Kind, PointCloud, SeededGraph, Skeleton, parents_first
 from prunus.params import Parameters
-from prunus.result import Seconds, timed
+from prunus.result import Found, Seconds, timed
 from prunus.sensing.isolated import Isolated
 
 BASE_REACH_M = 0.30
@@ -37,7 +44,7 @@ GROUND_M = 0.05
 class View:
     """A cloud, the points of it that were drawn, the field over their voxels, and all trees.
 
-    `notes`: what is to be said of a base that was given.
+    `given`: whether a base was; `notes`: what is to be said of it.
     """
 
     cloud: PointCloud
@@ -45,44 +52,16 @@ class View:
     voxels: Voxels
     field: PointField
     orchard: Orchard
+    given: bool
     notes: list[str]
-
-    @classmethod
-    def of(
-        cls,
-        cloud: PointCloud,
-        at: Floats | None,
-        params: Parameters,
-        rng: np.random.Generator,
-        seconds: Seconds,
-    ) -> View:
-        """The trees of a cloud; meant is that at a base (3,), or at which the scanner looks.
-
-        NoTreeError where nothing is wood; PrunusError where the base is far from any.
-        """
-        with timed(seconds, "field"):
-            even = cloud.evened(rng) if params.input.draw == "space" else cloud
-            drawn = even.sample(params.input.count, rng)
-            voxels = voxels_of(drawn.xyz)
-            field = without_wires(see_field(voxels), rng)
-        with timed(seconds, "votes"):
-            threads = gather_votes(field)
-        if len(threads) == 0:
-            raise NoTreeError("no tree was found: nothing in the cloud looks like wood")
-        with timed(seconds, "growth"):
-            at, notes = _on_wood(threads, at, cloud)
-            orchard = Orchard.of(threads, at, alone=params.isolation.isolate == "never")
-        return cls(
-            cloud=cloud, drawn=drawn, voxels=voxels, field=field, orchard=orchard, notes=notes
-        )
 
     def isolated(self, tree: Skeleton) -> Isolated:
         """What each point of the cloud is to a tree."""
-        return Isolated(self._kinds(int(tree.superpoint[0])), tree.xyz[0], tree.xyz[0])
+        return Isolated(self._kinds(int(tree.superpoint[0])), tree.xyz[0])
 
-    def tree(self) -> Skeleton:
+    def tree(self, cut: Cut = cut_branches, choose: Choose = choose_parents) -> Skeleton:
         """The tree that is meant."""
-        return _by_nodes(self.orchard.tree_at(self.orchard.main))
+        return _by_nodes(self.orchard.tree_at(self.orchard.main, cut, choose))
 
     def graph(self, tree: Skeleton, alone: bool) -> SeededGraph:
         """The graph of the threads and of that tree, with its points `alone`, or all."""
@@ -106,43 +85,109 @@ class View:
         return kind
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Grown:
-    """The tree, the graph of its threads, what the field told, what each point is, and notes."""
+@dataclass(frozen=True, kw_only=True)
+class Votes:
+    """The evidence that votes give; each part can be replaced by another of its kind.
 
-    skeleton: Skeleton
-    graph: SeededGraph
-    told: Told
-    isolated: Isolated | None
-    notes: list[str]
+    see: voxels to the point field; clean: the field without what is no wood though it looks like
+    it, wires; vote: field to threads; join: threads, and the longest gap in metres, to a graph.
+    """
+
+    see: Callable[[Voxels], PointField] = see_field
+    clean: Callable[[PointField, np.random.Generator], PointField] = without_wires
+    vote: Callable[[PointField], Threads] = gather_votes
+    join: Callable[[Threads, float], ThreadGraph] = join_threads
+
+    def __call__(
+        self,
+        cloud: PointCloud,
+        at: Floats | None,
+        params: Parameters,
+        rng: np.random.Generator,
+        seconds: Seconds,
+    ) -> View:
+        """The trees of a cloud; meant is that at a base (3,), or at which the scanner looks.
+
+        NoTreeError where nothing is wood; PrunusError where the base is far from any.
+        """
+        with timed(seconds, "field"):
+            drawn = cloud.sample(params.input.count, rng)
+            voxels = voxels_of(drawn.xyz)
+            field = self.clean(self.see(voxels), rng)
+        with timed(seconds, "votes"):
+            threads = self.vote(field)
+        if len(threads) == 0:
+            raise NoTreeError("no tree was found: nothing in the cloud looks like wood")
+        with timed(seconds, "growth"):
+            base, notes = _on_wood(threads, at, cloud)
+            graph = self.join(threads, params.growth.gap_max)
+            orchard = Orchard.of(graph, base, alone=params.isolation.isolate == "never")
+        return View(
+            cloud=cloud, drawn=drawn, voxels=voxels, field=field, orchard=orchard,
+            given=at is not None, notes=notes,
+        )  # fmt: skip
 
 
-def grow_tree(
+@dataclass(frozen=True, kw_only=True)
+class Growth:
+    """The tree that grows on that evidence; each part can be replaced by another of its kind.
+
+    cut: which branches grow from a foot, none shorter than two lengths in metres, of branches and
+    of what looks like a spur; choose: on what they hang, and their labels.
+    """
+
+    cut: Callable[[Threads, Ways, int, float, float], Branches] = cut_branches
+    choose: Choose = choose_parents
+
+    def __call__(
+        self, view: View, params: Parameters, rng: np.random.Generator, seconds: Seconds
+    ) -> Found:
+        """The tree that is meant, what the field told of it, and what of the cloud is not it."""
+        with timed(seconds, "growth"):
+            skeleton = view.tree(self._cut_by(params), self.choose)
+            told = told_of(skeleton, view.orchard, view.field, given=view.given)
+        with timed(seconds, "isolate"):
+            isolated = asked_for(view.isolated(skeleton), params)
+            graph = view.graph(skeleton, alone=isolated is not None)
+        notes = view.notes if isolated is None else [*view.notes, isolated.told()]
+        if not view.given:
+            place = view.cloud.words_for(skeleton.xyz[0])
+            notes = [*notes, f"no base was given: the foot of the trunk was found at {place}"]
+        with timed(seconds, "measures"):
+            warnings = remarks(skeleton, graph, for_tips=False)
+        return Found(
+            skeleton=skeleton, graph=graph, warnings=warnings, notes=notes, isolated=isolated,
+            told=told,
+        )  # fmt: skip
+
+    def _cut_by(self, params: Parameters) -> Cut:
+        least = params.growth.branch_min, params.growth.spur_min
+        return lambda threads, ways, foot: self.cut(threads, ways, foot, *least)
+
+
+def isolated_tree(
     cloud: PointCloud,
     at: Floats | None,
     params: Parameters,
     rng: np.random.Generator,
     seconds: Seconds,
-) -> Grown:
-    """The tree of a cloud that stands at a base (3,), or at which the scanner looks.
+) -> Isolated | None:
+    """What each point of a scan is to the tree that is meant; None where nothing is to be left out.
 
-    NoTreeError where nothing is wood; PrunusError where the base is far from any.
+    Errors are those of `Votes`.
     """
-    view = View.of(cloud, at, params, rng, seconds)
-    with timed(seconds, "growth"):
-        skeleton = view.tree()
-        told = told_of(skeleton, view.orchard, view.field, given=at is not None)
+    if params.isolation.isolate == "never":
+        return None
+    view = Votes()(cloud, at, params, rng, seconds)
     with timed(seconds, "isolate"):
-        isolated = view.isolated(skeleton)
-        raw = isolated.removed >= params.isolation.raw_from
-        raw = {"auto": raw, "always": True, "never": False}[params.isolation.isolate]
-        graph = view.graph(skeleton, alone=raw)
-    notes = [*view.notes, isolated.told()] if raw else view.notes
-    if at is None:
-        place = cloud.words_for(skeleton.xyz[0])
-        notes = [*notes, f"no base was given: the foot of the trunk was found at {place}"]
-    left_out = isolated if raw else None
-    return Grown(skeleton=skeleton, graph=graph, told=told, isolated=left_out, notes=notes)
+        return asked_for(view.isolated(view.tree()), params)
+
+
+def asked_for(isolated: Isolated, params: Parameters) -> Isolated | None:
+    """What was isolated, where the scan is raw enough for what is asked."""
+    raw = isolated.removed >= params.isolation.raw_from
+    wanted = {"auto": raw, "always": True, "never": False}[params.isolation.isolate]
+    return isolated if wanted else None
 
 
 def _by_nodes(tree: Skeleton) -> Skeleton:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from prunus.errors import NoTreeError, naming
-from prunus.grown import View
+from prunus.grown import View, Votes
 from prunus.intake import Scan, open_scan
 from prunus.io.classes import check_ply, write_classes
 from prunus.io.clouds import FileCloud, check_kind, write_cloud
@@ -45,7 +45,7 @@ class Opened:
         with naming(path), explaining(scan.cloud):
             base = None if at is None else scan.cloud.to_input.inverse().apply(at)
             rng = np.random.default_rng(seed)
-            return cls(scan, View.of(scan.cloud, base, Parameters(), rng, {}))
+            return cls(scan, Votes()(scan.cloud, base, Parameters(), rng, {}))
 
     def place(self, point: Floats) -> Floats:
         """A point of the house frame (3,) in the frame of the file."""

@@ -25,7 +25,7 @@ from prunus.errors import PrunusError
 from prunus.reading import in_words, read_toml
 
 PI = math.pi
-Method = Literal["default", "paper", "learned"]
+MethodName = Literal["default", "paper"]
 
 
 def _number(default: Any, symbol: str, unit: str, about: str, **limits: Any) -> Any:
@@ -57,15 +57,11 @@ class _Group(BaseModel):
 
 
 class Input(_Group):
-    """What is read of the cloud (docs/method.md)."""
+    """What is read of the cloud."""
 
     points: Annotated[int, Field(ge=1)] | Literal["all"] = _number(
         100_000, "P", "points", "points >= 1 drawn at random from the cloud, or 'all'"
     )
-    draw: Literal["space", "points"] = _number(
-        "points", "draw", "space, points", "space: places much denser than most give no more than "
-        "their share; points: each point is as likely as any other, as in the paper"
-    )  # fmt: skip
 
     @property
     def count(self) -> int | None:
@@ -79,13 +75,25 @@ class Input(_Group):
 
 
 class Isolation(_Group):
-    """One tree out of a raw scan (beyond the paper, where people do it by hand)."""
+    """One tree out of a raw scan; in the paper people do it by hand."""
 
     isolate: Literal["auto", "always", "never"] = _number(
         "auto", "-", "-", "'auto': where the scan is evidently raw, see raw_from"
     )
     raw_from: float = _number(
         0.08, "-", "1", "a scan is raw when so large a share of it is not the tree", gt=0, lt=1
+    )
+
+
+class Growth(_Group):
+    """What grows on the votes (docs/growth.md)."""
+
+    gap_max: float = _number(
+        0.50, "-", "m", "gaps in the wood up to this are bridged; 0 bridges none", ge=0, le=3
+    )
+    branch_min: float = _number(0.07, "-", "m", "shorter branches are none", ge=0, le=3)
+    spur_min: float = _number(
+        0.12, "-", "m", "nor are shorter ones most of which looks like a spur", ge=0, le=3
     )
 
 
@@ -98,15 +106,6 @@ class Cover(_Group):
     min_points: int = _number(
         8, "min_points", "points", "balls with fewer points are noise", ge=1, le=10_000
     )
-    place: Literal["axes", "random"] = _number(
-        "axes", "-", "-", "'axes': along the branches and where they meet; 'random': as the paper"
-    )
-    along: float = _number(
-        0.08, "-", "m", "a superpoint on an axis covers so much of it to either end", ge=0.01, le=1
-    )
-    across: float = _number(
-        0.04, "-", "m", "and what of the drawn-together cloud is so near the axis", ge=0.01, le=1
-    )
 
 
 class Confidence(_Group):
@@ -114,13 +113,6 @@ class Confidence(_Group):
 
     alpha_conf: float = _number(
         0.40, "alpha_conf", "1", "edges under this confidence cost score", ge=0, le=0.99
-    )
-    floor: Annotated[float, Field(ge=0, lt=1)] | Literal["auto"] = _number(
-        "auto", "-", "1",
-        "edges under 0 <= floor < 1 are left out (beyond the paper); 'auto' as suits the scorer",
-    )  # fmt: skip
-    edge_net: Literal["ours", "paper"] = _number(
-        "ours", "-", "-", "network that gives the confidence: 'ours' or that of the 'paper'"
     )
 
 
@@ -157,17 +149,6 @@ class Search(_Group):
     k_max_rep: int = _number(
         3, "k_MaxRep", "skeletons", "copies of one skeleton in the population", ge=1, le=1_000_000
     )
-    refine: bool = _number(
-        True, "-", "-", "improve the best skeleton one edge at a time (beyond the paper)"
-    )
-
-
-class Leaders(_Group):
-    """Stubs (beyond the paper)."""
-
-    min_length: float = _number(
-        0.35, "-", "m", "shorter leaders are dropped; 0 keeps all", ge=0, le=10
-    )
 
 
 class SideBranches(_Group):
@@ -183,13 +164,6 @@ class SideBranches(_Group):
         PI / 2, "pi / 2", "rad", "greatest turn between edges of a side branch", ge=0, le=PI
     )
 
-    several: bool = _number(
-        True, "-", "-", "a loose piece may touch the support and hold several (beyond the paper)"
-    )
-    min_length: float = _number(
-        0.10, "-", "m", "the second and further ones of a piece reach so far", ge=0, le=10
-    )
-
     @model_validator(mode="after")
     def _in_order(self) -> SideBranches:
         if self.angle_min > self.angle_max:
@@ -198,34 +172,22 @@ class SideBranches(_Group):
 
 
 _SHARED = ("input", "isolation")
-_SEARCHED = (
-    *_SHARED, "superpoints", "confidence", "tips", "turn", "grow", "search", "leaders",
-    "side_branches",
-)  # fmt: skip
 SCORES_NOTHING = (
     'of no use to the method "default", which scores no edges; expected it beside parameters of '
     'method = "paper" (--params paper) alone'
 )
 
-GROUPS: dict[Method, tuple[str, ...]] = {
-    "default": _SHARED,
-    "paper": _SEARCHED,
-    "learned": _SEARCHED,
-}
+GROUPS: dict[MethodName, tuple[str, ...]] = {
+    "default": (*_SHARED, "growth"),
+    "paper": (
+        *_SHARED, "superpoints", "confidence", "tips", "turn", "grow", "search", "side_branches",
+    ),
+}  # fmt: skip
 """The groups of parameters by which each method goes."""
 
-_OWN: dict[Method, dict[str, dict[str, Any]]] = {
+_OWN: dict[MethodName, dict[str, dict[str, Any]]] = {
     "default": {},
-    "paper": {
-        "input": {"points": 50_000},
-        "isolation": {"isolate": "never"},
-        "superpoints": {"place": "random"},
-        "confidence": {"floor": 0.0, "edge_net": "paper"},
-        "search": {"refine": False},
-        "leaders": {"min_length": 0.0},
-        "side_branches": {"several": False},
-    },
-    "learned": {"input": {"points": 50_000}},
+    "paper": {"input": {"points": 50_000}, "isolation": {"isolate": "never"}},
 }
 """Where the defaults of a method are others than those of the groups."""
 
@@ -234,21 +196,21 @@ class Parameters(_Group):
     """The method, and its parameters, one frozen group a stage.
 
     A method goes by its own groups (`GROUPS`); one of another method is refused. Numbers of the
-    paper have its values; what goes beyond it is switched off in `paper()`.
+    paper have its values.
     """
 
-    method: Method = Field(
+    method: MethodName = Field(
         "default", description="how a tree is found: 'default' (docs/growth.md) or 'paper'"
     )
     input: Input = Input()
     isolation: Isolation = Isolation()
+    growth: Growth = Growth()
     superpoints: Cover = Cover()
     confidence: Confidence = Confidence()
     tips: Tips = Tips()
     turn: Turn = Turn()
     grow: Grow = Grow()
     search: Search = Search()
-    leaders: Leaders = Leaders()
     side_branches: SideBranches = SideBranches()
 
     def __init__(self, **groups: Any) -> None:
@@ -262,7 +224,7 @@ class Parameters(_Group):
         """What is not named is as the method has it; what it does not go by is refused."""
         if not isinstance(values, Mapping):
             return values
-        values, defaults = _of_older(dict(values))
+        values = _without_removed(values)
         method = values.get("method", "default")
         if not isinstance(method, str) or method not in GROUPS:
             return values
@@ -271,7 +233,7 @@ class Parameters(_Group):
                 continue
             if not isinstance(values[name], _Group) or values[name] != field.default:
                 raise ValueError(_foreign(name, method))
-        for name, own in _OWN[defaults or method].items():
+        for name, own in _OWN[method].items():
             given = values.get(name, {})
             values[name] = {**own, **given} if isinstance(given, Mapping) else given
         return values
@@ -284,13 +246,8 @@ class Parameters(_Group):
 
     @classmethod
     def paper(cls) -> Parameters:
-        """The method as the paper has it, without what we do beyond it."""
+        """The method as the paper has it."""
         return cls(method="paper")
-
-    @classmethod
-    def learned(cls) -> Parameters:
-        """What was the default before; it goes away."""
-        return cls(method="learned")
 
     @classmethod
     def parse(cls, values: Any, source: str = "params") -> Parameters:
@@ -299,6 +256,15 @@ class Parameters(_Group):
             values = {str(name): group for name, group in values.items()}
         with in_words(source, cls, noun="parameter"):
             return cls.model_validate(values)
+
+    @classmethod
+    def of_record(cls, values: Any, source: str) -> Parameters:
+        """Those that are stored beside a result; of a method that is gone, the default's.
+
+        What it made is kept beside it, or is not to be had again. PrunusError as of `parse`.
+        """
+        gone = isinstance(values, Mapping) and _method_of(values) == GONE
+        return cls() if gone else cls.parse(values, source)
 
     @classmethod
     def from_toml(cls, path: str | Path) -> Parameters:
@@ -333,28 +299,66 @@ class Parameters(_Group):
         return "\n".join(lines)
 
 
-def _of_older(values: dict[str, Any]) -> tuple[dict[str, Any], Method | None]:
-    """Values in which `search.score` chose the method, as files had it before there was `method`.
+GONE = "learned"
+"""The method that was the default of 0.1."""
+_ANY: Any = object()
+_REMOVED: dict[str, dict[str, Any]] = {
+    "input": {"draw": "points"},
+    "superpoints": {"place": "random", "along": _ANY, "across": _ANY},
+    "confidence": {"floor": 0.0, "edge_net": "paper"},
+    "search": {"score": "paper", "refine": False},
+    "leaders": {"min_length": 0.0},
+    "side_branches": {"several": False, "min_length": _ANY},
+}
+"""What files of 0.1 name and nothing has any more, with what the paper's method had there always;
+any where nothing came of it then."""
 
-    With them the method whose defaults hold for what they do not name: that of then; None: as now.
-    """
+
+def _method_of(values: Mapping[str, Any]) -> Any:
+    """The method that values name, or named by `search.score` before there was `method`."""
     search = values.get("search")
-    if "method" in values or not isinstance(search, Mapping) or "score" not in search:
-        return values, None
-    if search["score"] not in ("learned", "paper"):
+    score = search.get("score") if isinstance(search, Mapping) else None
+    return values.get("method", score or "default")
+
+
+def _without_removed(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Values less what older files name and is gone; ValueError where that said something else."""
+    left = dict(values)
+    if _method_of(values) == GONE:
+        where = "method" if "method" in values else "search.score"
         raise ValueError(
-            f"search.score: found {search['score']!r}; expected no score, but, above all groups, "
-            'method = "default" or "paper"'
+            f"{where}: found {GONE!r}, the method of prunus 0.1, which is gone since 0.2; "
+            'expected method = "default" with none of its groups, or method = "paper"'
         )
-    rest = {name: value for name, value in search.items() if name != "score"}
-    return values | {"method": search["score"], "search": rest}, "learned"
+    for name, removed in _REMOVED.items():
+        group = values.get(name)
+        if not isinstance(group, Mapping) or not removed.keys() & group.keys():
+            continue
+        for key in removed.keys() & group.keys():
+            _check_removed(f"{name}.{key}", group[key], removed[key])
+        left[name] = {key: value for key, value in group.items() if key not in removed}
+        if not left[name]:
+            del left[name]
+    left.setdefault("method", _method_of(values))
+    return left
 
 
-def _foreign(group: str, method: Method) -> str:
+def _check_removed(name: str, found: Any, kept: Any) -> None:
+    """Raise ValueError where what is gone had another value than the paper's method had always."""
+    if kept is _ANY or (found == kept and isinstance(found, bool) == isinstance(kept, bool)):
+        return
+    raise ValueError(
+        f"{name}: found {found!r}, of the method of prunus 0.1, which is gone since 0.2; leave "
+        f"{name} out (the paper's method has {kept!r})"
+    )
+
+
+def _foreign(group: str, method: MethodName) -> str:
     goes_by = ", ".join(GROUPS[method])
+    other = next(name for name, groups in GROUPS.items() if group in groups)
     return (
         f'the method "{method}" does not go by [{group}], but by {goes_by}; [{group}] is of '
-        'method = "paper"'
+        f'method = "{other}"'
     )
 
 

@@ -10,17 +10,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from prunus.errors import NoTreeError, PrunusError
-from prunus.grown import grow_tree
-from prunus.measure import remarks
+from prunus.method import Method
 from prunus.model import Floats, PointCloud
 from prunus.model.arrays import frozen
-from prunus.params import SCORES_NOTHING, Parameters, checked_params, checked_seed
+from prunus.params import Parameters, checked_params, checked_seed
 from prunus.plausible import Evidence
-from prunus.result import Result, Seconds, timed
+from prunus.result import Result, Seconds
 from prunus.sensing.diagnosis import explaining
 
 if TYPE_CHECKING:
-    from prunus.stages.confidence import EdgeScorer
+    from prunus.paper.confidence import EdgeScorer
 
 
 def skeletonize(
@@ -50,29 +49,22 @@ def follow(
     params: Parameters | Mapping[str, Any] | None = None,
     seed: int = 0,
     scorer: EdgeScorer | None = None,
+    method: Method | None = None,
 ) -> Result:
-    """What `skeletonize` finds, tree or not: for experiments, which count the failures too."""
+    """What `skeletonize` finds, tree or not: for experiments, which count the failures too.
+
+    method: one with another part than that of the parameters.
+    """
     at = None if base is None else cloud.to_input.inverse().apply(_point(base))
     params, seed = checked_params(params), checked_seed(seed)
-    if params.method != "default":
-        # Here, since no other chain needs a compiler.
-        from prunus.searched import search_tree
-
-        return search_tree(cloud, at, params, seed, scorer)
-    if scorer is not None:
-        raise PrunusError(f"scorer: {SCORES_NOTHING}")
-    return _grown(cloud, at, params, seed)
-
-
-def _grown(cloud: PointCloud, at: Floats | None, params: Parameters, seed: int) -> Result:
-    """The tree that grows on the votes of the point field."""
-    seconds: Seconds = {}
-    grown = grow_tree(cloud, at, params, np.random.default_rng(seed), seconds)
-    with timed(seconds, "measures"):
-        warnings = remarks(grown.skeleton, grown.graph, for_tips=False)
+    method = Method.of(params) if method is None else method
+    method = method if scorer is None else method.scored_by(scorer)
+    rng, seconds = np.random.default_rng(seed), Seconds()
+    evidence = method.evidence(cloud, at, params, rng, seconds)
+    found = method.tree(evidence, params, rng, seconds)
     return Result(
-        grown.skeleton, grown.graph, None, np.zeros(0), seconds, params, seed, warnings,
-        grown.notes, cloud, grown.isolated, grown.told,
+        found.skeleton, found.graph, found.score, found.history, seconds, params, seed,
+        found.warnings, found.notes, cloud, found.isolated, found.told,
     )  # fmt: skip
 
 

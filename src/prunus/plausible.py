@@ -13,10 +13,10 @@ import numpy as np
 from prunus.errors import NoTreeError
 from prunus.measure.remarks import explained_points
 from prunus.model import Label, Skeleton
+from prunus.paper.trunks import find_trunks
 from prunus.result import Result
 from prunus.sensing.diagnosis import LINE_M, STEP_M, coarse_words, coarseness, is_lying, spread
-from prunus.sensing.linear import linear_of
-from prunus.sensing.trunks import find_trunks
+from prunus.sensing.linear import linear_at, linear_of
 
 # The limits were set on simulated and drawn clouds alone, by `python -m bench.plausible`: 142 scans
 # of 40 trees, on 130 of which wood could be followed, 36 of them raw with nothing taken out; 22
@@ -32,10 +32,7 @@ LEAST_EXPLAINED = 0.10
 or were made one, 0.14 on the 36 but for one with 0.05; 0.09 at most where no wood was followed."""
 MOST_EXPLAINED = 0.50
 """Where it passes less, as on 4 of the 94 and 21 of the 36, a hedge or a heap of twigs is told by
-the next."""
-LEAST_TRUST = 0.70
-"""So large a share of its edges is likely right: 0.76 at least on those trees, 0.68 at most on the
-balls, boxes, heaps, suckers, trellises and cones of needles that pass as little."""
+there being no trunk in view."""
 LEAST_LINEAR, USUAL_LINEAR = 0.30, 0.40
 """On the 130 none had less than 0.38 (see `Evidence`); walls, balls and boxes had 0.07 to 0.28,
 what else is a surface up to 0.35."""
@@ -62,9 +59,8 @@ class Evidence:
     share of them within r_super of it; linear: how much the median superpoint (of a tree that grew
     on votes, the median place of its cloud) looks like a piece of a branch, 0 to 1; rise: metres up
     a metre of leader; step: in which the coordinates come, metres. Of a scorer that tells
-    categories: trunk, whether one is in view; trust, the share of the edges that are likely right,
-    asked for where little is explained. Of a tree that grew on votes in place of these: wood, how
-    likely it is a bare tree; sure, the confidence of its edges in the mean over their length.
+    categories: trunk, whether one is in view. Of a tree that grew on votes in place of it: wood,
+    how likely it is a bare tree; sure, the confidence of its edges in the mean over their length.
     lies: whether another axis than Z is up by all evidence.
     """
 
@@ -75,7 +71,6 @@ class Evidence:
     rise: float
     step: float = 0.0
     trunk: bool = True
-    trust: float = 1.0
     wood: float = 1.0
     sure: float = 1.0
     lies: bool = False
@@ -85,15 +80,10 @@ class Evidence:
         """The evidence in what the chain found."""
         skeleton, graph = result.in_house, result.graph
         length, explained = float(skeleton.lengths.sum()), explained_points(skeleton, graph)
-        trunk, trust, wood, sure = True, 1.0, 1.0, 1.0
+        trunk, wood, sure = True, 1.0, 1.0
         if result.told is None:
-            # Here, since it takes a compiler.
-            from prunus.sensing.surroundings import Pieces
-
-            linear = float(np.median(Pieces.of(graph.scored).linear))
+            linear = linear_at(graph.superpoints)
             trunk = not graph.scored.category.size or bool(find_trunks(graph.scored))
-            if explained < MOST_EXPLAINED and result.trust is not None:
-                trust = result.trust.tree
         else:
             linear = linear_of(graph.superpoints.cloud.xyz)
             sure = sureness(skeleton)
@@ -103,7 +93,7 @@ class Evidence:
         form = 1.0 if result.trust is None else result.trust.form
         odd = form < USUAL_FORM or wood < USUAL_WOOD or 0 < rise < USUAL_RISE
         lies = odd and is_lying(result.scan)
-        return cls(length, across, explained, linear, rise, step, trunk, trust, wood, sure, lies)
+        return cls(length, across, explained, linear, rise, step, trunk, wood, sure, lies)
 
     def check(self) -> None:
         """Raise NoTreeError where it is no tree."""
@@ -130,8 +120,6 @@ class Evidence:
         heap = f", but a hedge or a heap of twigs: {1 - self.explained:.0%} of the points are not"
         if not self.trunk and self.explained < MOST_EXPLAINED:
             yield f"{heap} explained by any branch, and no trunk is in view"
-        if self.trust < LEAST_TRUST:
-            yield f"{heap} explained by any branch, and {self.trust:.0%} of its edges likely right"
         if self.lies:
             yield ", since it lies"
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from prunus.measure import branches
 from prunus.measure.refine import Refined, refined
-from prunus.measure.trust import Known, KnownGrown, Trust, trust_in, trust_in_grown
+from prunus.measure.trust import Known, Trust, trust_in
 from prunus.measure.trust.review import review_of
 from prunus.model import Floats, Label, PointCloud, SeededGraph, Skeleton, Told
 from prunus.params import Parameters
@@ -33,6 +33,20 @@ def timed(seconds: Seconds, stage: str) -> Iterator[None]:
     before = seconds.get(stage, (0.0, 0.0))
     spent = time.process_time() - cpu, time.perf_counter() - wall
     seconds[stage] = (before[0] + spent[0], before[1] + spent[1])
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Found:
+    """What a method makes of a cloud: see the fields of `Result` of the same names."""
+
+    skeleton: Skeleton
+    graph: SeededGraph
+    warnings: list[str]
+    notes: list[str]
+    isolated: Isolated | None
+    told: Told | None = None
+    score: float | None = None
+    history: Floats = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,31 +101,13 @@ class Result:
 
     @cached_property
     def trust(self) -> Trust | None:
-        """How far to trust it; None where the paper's score found it."""
-        if len(self.in_house) == 1:
+        """How far to trust it; None where it did not grow on votes."""
+        if len(self.in_house) == 1 or self.told is None:
             return None
-        if self.told is not None:
-            return trust_in_grown(KnownGrown(self.in_house, self.told))
-        if self.params.method != "learned":
-            return None
-        # Here, since it takes a compiler.
-        from prunus.search import goes_by_learned_score, shipped_score
-        from prunus.search.judged import judged
-
-        if not goes_by_learned_score(self.graph, self.params):
-            return None
-        told = judged(self.in_house, self.graph, shipped_score())
-        raw = self.isolated is not None
-        return trust_in(Known(self.in_house, self.refined, told.gain, told.likely, raw))
+        return trust_in(Known(self.in_house, self.told))
 
     @cached_property
     def review(self) -> list[str]:
         """Why a person should look at the tree before a machine acts on it; empty: no need."""
         doubts = [] if self.trust is None else review_of(self.in_house, self.trust)
-        return [*self._other_tree(), *self.warnings, *doubts]
-
-    def _other_tree(self) -> list[str]:
-        rival = None if self.isolated is None else self.isolated.rival
-        if rival is None:
-            return []
-        return [f"the tree that stands at {self.scan.words_for(rival)} could be meant as well"]
+        return [*self.warnings, *doubts]

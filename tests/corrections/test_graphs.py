@@ -1,7 +1,7 @@
 """What a journal was begun on is kept beside it: it outlives the chain, and a broken file."""
 
 import json
-from dataclasses import fields, replace
+from dataclasses import fields
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -56,10 +56,8 @@ def files(folder: Path) -> dict[str, bytes]:
     return {name: (folder / name).read_bytes() for name in names if (folder / name).exists()}
 
 
-@pytest.mark.parametrize("rival", [None, np.array([0.5, 0.25, -1.0])])
-def test_what_was_written_is_read(raw: Result, tmp_path: Path, rival: np.ndarray | None) -> None:
+def test_what_was_written_is_read(raw: Result, tmp_path: Path) -> None:
     assert raw.isolated is not None
-    raw = replace(raw, isolated=replace(raw.isolated, rival=rival))
     write_graph(tmp_path / "graph.npz", raw)
     again = read_graph(tmp_path / "graph.npz").result(raw.scan, raw.params, raw.seed)
     assert len(raw.scan) > len(raw.graph.superpoints.cloud)
@@ -70,7 +68,7 @@ def test_what_was_written_is_read(raw: Result, tmp_path: Path, rival: np.ndarray
 
 def test_a_graph_of_balls_keeps_no_points_and_finds_them_again(tmp_path: Path) -> None:
     cloud = field_scan(4).target_cloud().sample(8000, np.random.default_rng(0))
-    found = skeletonize(cloud, params=Parameters.learned())
+    found = skeletonize(cloud, params=Parameters.paper().changed("search", K=20))
     write_graph(tmp_path / "graph.npz", found)
     assert "members" not in read_arrays(tmp_path / "graph.npz")[0]
     again = read_graph(tmp_path / "graph.npz").result(found.scan, found.params, found.seed)
@@ -268,7 +266,6 @@ def test_a_graph_of_another_tree_is_passed_over(
         ("held", lambda a: a[:-1], "held: expected how many"),
         ("members", lambda a: a[:-1], "held: expected how many"),
         ("members", lambda a: a + 99_999, "members: expected numbers"),
-        ("wood", lambda a: a[:-1], r"shape .*; expected \("),
         ("steps", lambda a: a + 9_999, "steps: expected numbers from 0"),
         ("steps", lambda a: -a - 1, "steps: expected numbers from 0"),
         ("steps", lambda a: a + 0.5, "steps: expected whole numbers"),

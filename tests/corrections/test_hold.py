@@ -29,7 +29,8 @@ def holds(after: State, at: State) -> bool:
 @pytest.fixture(scope="module")
 def searching(scan_file: Path) -> State:
     """What a machine finds that searches."""
-    return State.of(skeletonize(open_scan(scan_file, "z-up").cloud, params=Parameters.learned()))
+    paper = Parameters.paper().changed("search", K=20)
+    return State.of(skeletonize(open_scan(scan_file, "z-up").cloud, params=paper))
 
 
 @pytest.mark.parametrize("which", ["machine", "searching"])

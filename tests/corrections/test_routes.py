@@ -8,7 +8,7 @@ import pytest
 
 from prunus.corrections.routes import SURE, cheapest_way
 from prunus.model import SeededGraph
-from tests.search.graphs import random_graph
+from tests.paper.graphs import random_graph
 
 
 def weighted(graph: SeededGraph, taken: set[int]) -> nx.Graph:

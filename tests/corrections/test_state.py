@@ -7,7 +7,7 @@ import pytest
 
 from prunus.corrections import Brush, Class, Mark, MoveBase, PickBase, Rebuild, Refused, RemoveEdge
 from prunus.corrections.state import State, apply
-from prunus.grown import View
+from prunus.grown import Votes
 from prunus.model import Kind
 from prunus.pipeline import skeletonize
 from tests.conftest import field_scan
@@ -39,10 +39,10 @@ def test_isolation_says_what_each_point_is_before_anyone_does() -> None:
 
 def test_the_base_of_another_tree_gives_that_tree() -> None:
     at = raw()
-    view = View.of(at.scan, None, at.params, np.random.default_rng(0), {})
+    view = Votes()(at.scan, None, at.params, np.random.default_rng(0), {})
     trees = [view.isolated(view.orchard.tree_at(foot)) for foot in view.orchard.feet.tolist()]
     others = [t for t in trees if np.linalg.norm(t.foot - at.draft.places[at.draft.base]) > 0.5]
-    base = max(others, key=lambda tree: tree.target.sum()).base
+    base = max(others, key=lambda tree: tree.target.sum()).foot
     after = apply(apply(at, PickBase(outside(at, base))), Rebuild())
     there = after.draft.places[after.draft.base]
     assert np.linalg.norm(there - base) < 0.3

@@ -56,7 +56,7 @@ def state(picture: str = TREE, seed: int = 0) -> State:
     graph = SeededGraph(scored, 0, np.array([M - 1]))
     found = Skeleton.build(cloud.xyz[:M], drawn.parent, drawn.label, superpoint=np.arange(M))
     return State.of(
-        Result(found, graph, 0.0, np.zeros(1), {}, Parameters.learned(), 0, [], [], cloud, None)
+        Result(found, graph, 0.0, np.zeros(1), {}, Parameters(), 0, [], [], cloud, None)
     )
 
 

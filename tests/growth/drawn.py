@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 
 from prunus.field.votes import Threads
+from prunus.growth.graph import join_threads
 from prunus.growth.grow import Orchard
 from prunus.model import Floats, Role, Skeleton
 
@@ -78,5 +79,5 @@ def surface_of(pieces: list[Piece], rng: np.random.Generator, apart: float = 0.0
 
 def grow(threads: Threads, base: Floats | None = None) -> Skeleton:
     """The tree of some threads: of that at `base` (3,), or of that at which the scanner looks."""
-    orchard = Orchard.of(threads, base)
+    orchard = Orchard.of(join_threads(threads), base)
     return orchard.tree_at(orchard.main)

@@ -1,9 +1,9 @@
-"""Clouds drawn together onto axes, and covered along them."""
+"""Clouds drawn together onto axes."""
 
 import numpy as np
 import pytest
 
-from prunus.kernels.axes import contract, cover_along, main_axis
+from prunus.kernels.axes import contract, main_axis
 from prunus.model import Floats
 
 
@@ -47,17 +47,3 @@ def test_where_branches_meet_it_is_least_like_a_line(rng: np.random.Generator) -
     points[:900, 2] -= 0.3
     drawn, _, line, _, _ = contract(points, np.ones(len(points)), 0.05, 4)
     assert np.linalg.norm(drawn[line.argmin()]) < 0.04
-
-
-def test_rods_cover_every_point_once_and_no_neighbour(rng: np.random.Generator) -> None:
-    up = np.array([0.0, 0.0, 1.0])
-    one = np.outer(np.linspace(0, 1, 101), up)
-    xyz = np.concatenate([one, one + np.array([0.06, 0, 0])])
-    axis, size = np.tile(up, (len(xyz), 1)), np.ones(len(xyz), np.int64)
-    chosen, held = cover_along(xyz, axis, size, rng.permutation(len(xyz)), 0.08, 0.04)
-    for line in (0.0, 0.06):
-        heights = np.sort(xyz[chosen[np.abs(xyz[chosen, 0] - line) < 0.01], 2])
-        assert np.diff(heights).max() <= 0.16 + 1e-9
-        assert np.diff(heights).min() > 0.08
-        assert heights[0] <= 0.08 and heights[-1] >= 0.92
-    assert held.max() == 17

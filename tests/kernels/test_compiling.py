@@ -15,7 +15,7 @@ from prunus.kernels.compiled import is_compiled, mark_compiled
 from prunus.kernels.compiling import AGAIN_S, FIRST, Listener
 
 CALL = (
-    "import numpy as np; from prunus.kernels.angles import turn_angle\n"
+    "import numpy as np; from prunus.paper.kernels.angles import turn_angle\n"
     "turn_angle(np.eye(3)[0], np.eye(3)[1]); print('ok')"
 )
 

@@ -8,17 +8,16 @@ import pytest
 
 from prunus.evaluate.curves import curve_measures
 from prunus.model import Floats, PointCloud, Skeleton
+from prunus.paper.score import skel_score
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.result import Result
 from prunus.rules import offenders
-from prunus.search import learned_score_of, shipped_score, skel_score
 from tests.conftest import simulated
 
 METHODS = {
     "default": Parameters(),
     "paper": Parameters.paper().changed("search", K=20),
-    "learned": Parameters.learned(),
 }
 SEEDS = [0, 1, 2, 3]
 every_tree = pytest.mark.parametrize("seed", SEEDS)
@@ -59,16 +58,14 @@ def test_labels_never_step_back_and_one_trunk_starts_at_the_base(seed: int) -> N
     assert not {"label_progression", "one_trunk_at_base"} & set(offenders(result(seed).skeleton))
 
 
-@pytest.mark.parametrize("method", ["paper", "learned"])
 @every_tree
-def test_as_in_the_paper_no_rule_is_broken(seed: int, method: str) -> None:
-    assert offenders(result(seed, method).skeleton) == {}
+def test_as_in_the_paper_no_rule_is_broken(seed: int) -> None:
+    assert offenders(result(seed, "paper").skeleton) == {}
 
 
-@pytest.mark.parametrize("method", ["paper", "learned"])
 @every_tree
-def test_every_edge_is_a_candidate_with_its_confidence(seed: int, method: str) -> None:
-    found = result(seed, method)
+def test_every_edge_is_a_candidate_with_its_confidence(seed: int) -> None:
+    found = result(seed, "paper")
     known = {
         (int(i), int(j)): c
         for (i, j), c in zip(found.graph.edges, found.graph.confidence, strict=True)
@@ -77,14 +74,6 @@ def test_every_edge_is_a_candidate_with_its_confidence(seed: int, method: str) -
     for (above, below), c in zip(found.skeleton.edges, found.skeleton.confidence[1:], strict=True):
         i, j = sorted((int(nodes[above]), int(nodes[below])))
         assert known[i, j] == c
-
-
-@every_tree
-def test_the_learned_score_is_the_sum_of_its_terms(seed: int) -> None:
-    found = result(seed, "learned")
-    told = learned_score_of(found.in_house, found.graph, shipped_score())
-    assert found.score == pytest.approx(told, abs=1e-6)
-    assert (np.diff(found.history) >= 0).all()
 
 
 @every_tree
@@ -130,13 +119,12 @@ def test_moving_the_cloud_moves_the_skeleton(
     assert moved.skeleton.xyz == pytest.approx(still.skeleton.xyz + shift, abs=1e-5, rel=0)
 
 
-@pytest.mark.parametrize("method", ["paper", "learned"])
 @every_tree
-def test_turning_the_cloud_half_round_turns_the_skeleton(seed: int, method: str) -> None:
+def test_turning_the_cloud_half_round_turns_the_skeleton(seed: int) -> None:
     points, base = points_of(seed)
     half = np.array([-1.0, -1.0, 1.0])
-    turned = skeletonize(points * half, base * half, METHODS[method], seed)
-    still = skeletonize(points, base, METHODS[method], seed)
+    turned = skeletonize(points * half, base * half, METHODS["paper"], seed)
+    still = skeletonize(points, base, METHODS["paper"], seed)
     assert same_decisions(turned.skeleton, still.skeleton)
     assert turned.skeleton.xyz == pytest.approx(still.skeleton.xyz * half, abs=1e-9)
 

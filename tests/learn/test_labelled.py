@@ -20,18 +20,18 @@ from prunus.learn import labelled  # noqa: E402
 from prunus.learn.examples import true_wood  # noqa: E402
 from prunus.learn.labelled import labelled_tree, split_by_edge  # noqa: E402
 from prunus.learn.labels import INVALID, SOME, UNTOLD, edge_labels  # noqa: E402
-from prunus.learn.net import Calibrated, ContextNet  # noqa: E402
-from prunus.learn.recipes import RECIPES  # noqa: E402
+from prunus.learn.net import Calibrated, PaperNet  # noqa: E402
+from prunus.learn.recipes import Recipe  # noqa: E402
 from prunus.learn.school import Course, lines_of, school  # noqa: E402
 from prunus.learn.start import start_from  # noqa: E402
 from prunus.learn.train import between, losses, onnx_bytes, predict  # noqa: E402
+from prunus.paper.candidates import find_candidates  # noqa: E402
+from prunus.paper.networks import SHIPPED, NetworkScorer  # noqa: E402
 from prunus.params import Parameters  # noqa: E402
 from prunus.pipeline import skeletonize  # noqa: E402
 from prunus.simulate.orchard import simulate_tree  # noqa: E402
-from prunus.stages.candidates import find_candidates  # noqa: E402
-from prunus.stages.networks import NetworkScorer, shipped_or_own  # noqa: E402
 
-PARAMS = Parameters.learned().changed("input", points=8000)
+PARAMS = Parameters.paper().changed("input", points=8000).changed("search", K=20)
 LABELS = 60
 
 
@@ -83,7 +83,7 @@ def test_labels_are_found_again_on_the_graph_that_the_chain_makes(
     assert int(first.told.sum()) == LABELS
     assert {INVALID, SOME} < set(first.category[first.told].tolist())
     assert np.array_equal(first.category, again.category)
-    assert not np.array_equal(first.context.profile, again.context.profile)
+    assert not np.array_equal(first.images, again.images)
 
 
 def test_labels_of_another_graph_are_refused(studio: Path, tmp_path: Path) -> None:
@@ -125,10 +125,10 @@ def test_edges_of_which_nothing_was_told_have_no_part_in_the_loss() -> None:
 
 
 def test_between_two_networks_lie_their_means() -> None:
-    one, other = ContextNet(), ContextNet()
+    one, other = PaperNet(), PaperNet()
     ends = [{name: own.clone() for name, own in net.state_dict().items()} for net in (one, other)]
     for share in (0.0, 1.0, 0.25):
-        net = ContextNet()
+        net = PaperNet()
         net.load_state_dict(ends[0])
         for name, own in between(net, other, share).state_dict().items():
             if own.is_floating_point():
@@ -144,28 +144,27 @@ def test_labels_that_were_all_taken_back_are_no_examples(studio: Path, tmp_path:
     assert (tree.graphs, tree.labels, tree.left_out) == ([], 0, 0)
 
 
-@pytest.mark.parametrize("name", ["ours", "paper"])
-def test_a_network_that_starts_from_a_file_says_what_the_file_says(name: str, studio: Path) -> None:
-    recipe = RECIPES[name]()
-    net = Calibrated(start_from(shipped_or_own(name), recipe.network()), 1.0, 0.0)
+def test_a_network_that_starts_from_a_file_says_what_the_file_says(studio: Path) -> None:
+    recipe = Recipe()
+    net = Calibrated(start_from(SHIPPED, recipe.network()), 1.0, 0.0)
     tree = labelled_tree(sorted(studio.glob("*/labels.jsonl"))[0], 0)
     example = tree.graphs[0][0]
-    path = studio.parent / f"{name}.onnx"
-    path.write_bytes(onnx_bytes(net, recipe, name, example))
-    again = Calibrated(start_from(path, RECIPES[name]().network()), 1.0, 0.0)
+    path = studio.parent / "paper.onnx"
+    path.write_bytes(onnx_bytes(net, recipe, example))
+    again = Calibrated(start_from(path, Recipe().network()), 1.0, 0.0)
     scan = open_scan(studio.parent / "orchard" / tree.name / "scan.ply")
     graph = find_candidates(skeletonize(scan.cloud, None, PARAMS).graph.superpoints)
-    said = NetworkScorer(shipped_or_own(name)).judge(graph)[0][example.told]
+    said = NetworkScorer(SHIPPED).judge(graph)[0][example.told]
     assert predict(net, recipe, [example])[0] == pytest.approx(said, abs=0.01)
     assert predict(again, recipe, [example])[0] == pytest.approx(said, abs=0.01)
 
 
 def test_only_a_network_of_its_kind_can_be_gone_on_from(tmp_path: Path) -> None:
-    with pytest.raises(PrunusError, match=r"paper.onnx: parameter .*: none; expected"):
-        start_from(shipped_or_own("paper"), ContextNet())
+    with pytest.raises(PrunusError, match=r"field.onnx: parameter .*: none; expected"):
+        start_from(SHIPPED.with_name("field.onnx"), PaperNet())
     (tmp_path / "net.onnx").write_bytes(b"no network")
     with pytest.raises(PrunusError, match=r"net.onnx: not an ONNX file"):
-        start_from(tmp_path / "net.onnx", ContextNet())
+        start_from(tmp_path / "net.onnx", PaperNet())
 
 
 def test_labels_alone_and_with_simulated_trees_give_weights(
@@ -174,7 +173,7 @@ def test_labels_alone_and_with_simulated_trees_give_weights(
     monkeypatch.setattr(labelled, "VIEWS", 2)
     weights = tmp_path / "mine.onnx"
     report = school([studio], weights, Course(epochs=1), 1, silently)
-    assert report["from"] == "ours"
+    assert report["from"] == "paper"
     assert sum(report["labels"]) == 2 * LABELS
     assert "split by edge" in report["notes"][-1]
     assert report["before"]["edges"] == report["test"]["edges"] > 0

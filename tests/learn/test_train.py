@@ -14,16 +14,16 @@ from prunus.errors import PrunusError  # noqa: E402
 from prunus.learn import examples as examples_of  # noqa: E402
 from prunus.learn.examples import Example, example_of, split_by_tree  # noqa: E402
 from prunus.learn.labels import TrueWood, edge_labels  # noqa: E402
-from prunus.learn.net import ContextNet, PaperNet  # noqa: E402
-from prunus.learn.recipes import RECIPES, side_by_side  # noqa: E402
+from prunus.learn.net import PaperNet  # noqa: E402
+from prunus.learn.recipes import Recipe  # noqa: E402
 from prunus.learn.school import Course, school  # noqa: E402
 from prunus.learn.train import calibrated, onnx_bytes, predict, train  # noqa: E402
 from prunus.model import CandidateGraph  # noqa: E402
+from prunus.paper.candidates import find_candidates  # noqa: E402
+from prunus.paper.networks import NetworkScorer  # noqa: E402
+from prunus.paper.superpoints import find_superpoints  # noqa: E402
 from prunus.params import Parameters  # noqa: E402
 from prunus.simulate.orchard import simulate_tree  # noqa: E402
-from prunus.stages.candidates import find_candidates  # noqa: E402
-from prunus.stages.networks import NetworkScorer  # noqa: E402
-from prunus.stages.superpoints import find_superpoints  # noqa: E402
 from tests.conftest import field_scan  # noqa: E402
 
 
@@ -31,7 +31,7 @@ from tests.conftest import field_scan  # noqa: E402
 def graph(seed: int) -> CandidateGraph:
     rng = np.random.default_rng(seed)
     cloud = field_scan(seed).target_cloud().sample(15_000, rng)
-    return find_candidates(find_superpoints(cloud, Parameters.learned().superpoints, rng))
+    return find_candidates(find_superpoints(cloud, Parameters.paper().superpoints, rng))
 
 
 @cache
@@ -61,30 +61,17 @@ def test_the_papers_network_does_not_care_how_the_image_lies() -> None:
         assert torch.allclose(net(images.flip(axes), described), found, atol=1e-6)
 
 
-def test_graphs_side_by_side_do_not_hear_each_other() -> None:
-    net = ContextNet().eval()
-    one, other = example(11), example(13)
-    both = net(*side_by_side([one, other])[0])
-    alone = net(*side_by_side([other])[0])
-    assert torch.allclose(both[len(one.category) :], alone, atol=1e-4)
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["paper", "ours"])
-def test_training_learns_repeats_and_exports_what_it_learnt(name: str, tmp_path: Path) -> None:
-    recipe = RECIPES[name](epochs=2 if name == "paper" else 12)
-    if name == "paper":
-        recipe.edges, recipe.size, recipe.every = 1500, 50, 1
-    else:
-        recipe.graphs = 1
+def test_training_learns_repeats_and_exports_what_it_learnt(tmp_path: Path) -> None:
+    recipe = Recipe(epochs=2, edges=1500, size=50, every=1)
     data = [example(11), example(13)]
     runs = [list(train(recipe, data, data, np.random.default_rng(0))) for _ in range(2)]
     losses = [[loss for _, loss in run] for run in runs]
     assert losses[0] == losses[1]
     assert losses[0][-1] < 0.9 * losses[0][0]
     net = calibrated(runs[0][-1][0], recipe, data)
-    path = tmp_path / f"{name}.onnx"
-    path.write_bytes(onnx_bytes(net, recipe, name, data[0]))
+    path = tmp_path / "mine.onnx"
+    path.write_bytes(onnx_bytes(net, recipe, data[0]))
     confidence, category, _ = predict(net, recipe, data[:1])
     said, kinds = NetworkScorer(path).judge(graph(11))
     assert said == pytest.approx(confidence, abs=0.01)

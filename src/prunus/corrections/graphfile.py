@@ -41,7 +41,8 @@ class GraphRecord(BaseModel):
     """What a file says beside its arrays.
 
     `points` are those of the cloud that the machine was given; `to_house` the rotation from the
-    frame of the scan's file; `isolated_at`, `foot` and `rival` are of isolation, null for none.
+    frame of the scan's file; `isolated_at` and `foot` are of isolation, null for none;
+    `rival` of older files.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
@@ -109,7 +110,6 @@ def write_graph(path: Path, result: Result) -> None:
     arrays = {
         "steps": np.diff(rows_of(own.cloud.xyz, result.scan.xyz), prepend=0),
         "xyz": own.xyz,
-        "wood": own.wood,
         "edges": graph.edges,
         "confidence": graph.confidence,
         "category": graph.scored.category,
@@ -128,9 +128,8 @@ def write_graph(path: Path, result: Result) -> None:
         "score": result.score,
         "warnings": result.warnings,
         "notes": result.notes,
-        "isolated_at": _place(None if isolated is None else isolated.base),
+        "isolated_at": _place(None if isolated is None else isolated.foot),
         "foot": _place(None if isolated is None else isolated.foot),
-        "rival": _place(None if isolated is None else isolated.rival),
         "version_of_prunus": __version__,
     }
     write_arrays(path, arrays, GraphRecord.model_validate(told).model_dump_json())
@@ -161,7 +160,7 @@ def _graph(arrays: Arrays, told: GraphRecord, cloud: PointCloud) -> SeededGraph:
     if len(drawn) == 0 or xyz.ndim != 2 or xyz.shape[1] != 3:
         raise ValueError("xyz: expected superpoints (N, 3), and points about them")
     start, members = _members_in(arrays, drawn, xyz, told.radius)
-    own = Superpoints(drawn, xyz, start, members, told.radius, finite(arrays, "wood"))
+    own = Superpoints(drawn, xyz, start, members, told.radius)
     category = shares(arrays, "category")
     if category.ndim != 2 or category.shape[1] not in (0, len(Label) + 1):
         raise ValueError(f"category: of shape {category.shape}; expected (E, {len(Label) + 1})")
@@ -216,5 +215,4 @@ def _isolated(arrays: Arrays, told: GraphRecord) -> Isolated | None:
     kind = indices(arrays, "kind", len(Kind))
     if kind.shape != (told.points,):
         raise ValueError(f"kind: of shape {kind.shape}; expected ({told.points},)")
-    rival = None if told.rival is None else np.array(told.rival)
-    return Isolated(kind, np.array(told.isolated_at), np.array(told.foot), rival)
+    return Isolated(kind, np.array(told.foot))

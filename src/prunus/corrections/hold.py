@@ -65,11 +65,13 @@ def searched(draft: Draft, held: Held, graph: SeededGraph, params: Parameters, s
         if lost := _lost(best, draft, nodes):
             raise _refusal(draft, lost)
         return best
+    if held == NOTHING and draft.base == graph.base:
+        return draft
     seeded = held_graph(draft, held, graph)
     # Here, since it takes a compiler.
-    from prunus.searched import best_skeleton
+    from prunus.paper.chain import Search
 
-    found = best_skeleton(seeded, params, np.random.default_rng(seed), {}).skeleton
+    found = Search().best(seeded, params, np.random.default_rng(seed), {}).skeleton
     best = _draft_of(found, draft)
     for back in (_lost(best, draft, nodes), nodes):
         whole = _put_back(best, draft, back)
@@ -143,5 +145,4 @@ def _all_nodes(draft: Draft, own: Superpoints) -> Superpoints:
         np.concatenate([own.start, own.start[-1] + start[1:]]),
         np.concatenate([own.members, members]),
         own.radius,
-        np.concatenate([own.wood, np.full(len(free), own.radius)]),
     )

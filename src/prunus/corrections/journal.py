@@ -112,7 +112,7 @@ def _head(path: Path, text: bytes) -> Head:
     if head.frame not in (*FRAMES, "auto"):
         known = ", ".join(FRAMES)
         raise PrunusError(f"{path}:1: unknown frame {head.frame!r}; expected auto, {known}")
-    Parameters.parse(head.params, f"{path}:1")
+    Parameters.of_record(head.params, f"{path}:1")
     return head
 
 

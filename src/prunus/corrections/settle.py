@@ -1,6 +1,6 @@
 """The legal tree nearest to one that breaks a rule: exact, from the leaves down to the base.
 
-What the rules see of a node is a state of the automaton of `search.eligible`. Of each node and
+What the rules see of a node is a state of the automaton of `paper.eligible`. Of each node and
 each label that its edge may have, the least is worked out that must change beyond it.
 """
 
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from prunus.corrections.draft import Draft
 from prunus.model import Label
-from prunus.search.eligible import grammar_table
+from prunus.paper.eligible import grammar_table
 
 REMOVED = 3.0
 """A metre that is taken away costs as much as so many that change their label once."""

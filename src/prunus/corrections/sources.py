@@ -72,7 +72,7 @@ def source_from(path: Path, settings: Settings) -> Source:
         raise PrunusError(f"{path}: does not say of which cloud it is; open the cloud instead")
     params = settings.params
     if record.params is not None:
-        params = Parameters.parse(record.params, f"{path}: params")
+        params = Parameters.of_record(record.params, f"{path}: params")
     seed = settings.seed if record.seed is None else record.seed
     own = replace(settings, params=params, seed=seed)
     return Source(_cloud_of(path, record.input), own, expected=skeleton)
@@ -121,7 +121,7 @@ def run(
     settings, base, expected, notes = source.settings, source.base, source.expected, list[str]()
     if head is not None:
         settings = Settings(
-            head.frame, head.unit, Parameters.parse(head.params, "journal"), head.seed
+            head.frame, head.unit, Parameters.of_record(head.params, "journal"), head.seed
         )
         base, expected = head.base, None
         if settings != source.settings:

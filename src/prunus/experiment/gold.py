@@ -18,7 +18,7 @@ from prunus.corrections.journal import NAME as JOURNAL
 from prunus.corrections.journal import Journal, read_journal, status_of
 from prunus.errors import PrunusError
 from prunus.evaluate.edits import edits, on_same_nodes
-from prunus.experiment.edges import NETWORKS, judged_edges
+from prunus.experiment.edges import judged_edges
 from prunus.experiment.habits import habits_of
 from prunus.experiment.orchard import Tree
 from prunus.experiment.trial import BY_HAND, Record, as_found, edited
@@ -93,13 +93,13 @@ class Corrected:
         ]  # fmt: skip
 
     def edges(self) -> dict[str, Any]:
-        """Both networks on the edges that were labelled; empty where none were."""
+        """The network on the edges that were labelled; empty where none were."""
         path = self.folder / "labels.jsonl"
         held = read_labels(path) if path.exists() else None
         if held is None or not held.labels:
             return {}
         graphs = [(made.candidates, told) for made, told in labelled_graphs(held, self.scans)[0]]
-        return {name: judged_edges(name, graphs) for name in NETWORKS}
+        return judged_edges(graphs)
 
 
 def corrected_in(folder: Path, scans: Path | None = None) -> tuple[list[Corrected], list[str]]:
@@ -133,7 +133,7 @@ def _tree(subject: Corrected) -> Tree:
     if mask.exists():
         cloud = scan.cloud.take(target_of(mask, len(scan.cloud)))
     else:
-        params = Parameters.parse(record.params or {}, str(subject.folder / "corrected.json"))
+        params = Parameters.of_record(record.params or {}, str(subject.folder / "corrected.json"))
         cloud = _isolated(scan.cloud, base, params, record.seed or 0)
     truth = with_nodes_every(gold, STEP)
     habits = habits_of(truth.moved(scan.cloud.to_input.inverse()))

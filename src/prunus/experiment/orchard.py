@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Protocol
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from prunus.experiment.habits import habits_of
+from prunus.field.network import see_field
+from prunus.field.votes import LEAST_WOOD, PointField
+from prunus.field.voxels import Voxels
 from prunus.learn.labels import TrueWood, edge_labels
 from prunus.measure import branch_of_rows, branches, counting_rows
-from prunus.model import Bools, CandidateGraph, Floats, Label, PointCloud, Skeleton
+from prunus.model import Bools, CandidateGraph, Floats, Label, PointCloud, Role, Skeleton
 from prunus.simulate.scan import Scan, simulate_scan
 from prunus.simulate.settings import Setting
 
@@ -49,7 +53,7 @@ class Subject(Protocol):
         """Trials that people corrected."""
 
     def edges(self) -> dict[str, Any]:
-        """What the edge networks say of its edges, see `experiment.edges`; empty: nothing known."""
+        """What the edge network says of its edges, see `experiment.edges`; empty: nothing known."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +82,7 @@ class Simulated:
         return []
 
     def edges(self) -> dict[str, Any]:
-        """Both networks on all candidate edges."""
+        """The network on all candidate edges."""
         from prunus.experiment.edges import edge_record
 
         return edge_record(self.tree())
@@ -108,7 +112,6 @@ class OracleScorer:
 
     tree: Tree
     name: str = "oracle"
-    floor: float = 0.0
 
     def __call__(self, candidates: CandidateGraph) -> Floats:
         """Confidence (E,): 1 where the edge follows wood."""
@@ -121,3 +124,32 @@ class OracleScorer:
         category = np.eye(len(Label) + 1)[np.maximum(found, 0)]
         category[found < 0] = 1 / (len(Label) + 1)
         return (found >= 0).astype(np.float64), category
+
+
+ON_WOOD_M = 0.05
+"""A voxel whose vote lies so near to true wood is of that wood."""
+SURE = 0.95
+"""How likely the true class of a voxel is said to be."""
+
+
+@dataclass(frozen=True)
+class TrueClasses:
+    """The point field of one who knows the tree: the true class of every voxel.
+
+    Of what is none of the true tree that is a spur which the network sees as wood, and the rest is
+    no wood. Places, radii and directions are the network's.
+    """
+
+    tree: Tree
+
+    def __call__(self, voxels: Voxels) -> PointField:
+        """The field of voxels of the tree's cloud."""
+        field = see_field(voxels)
+        truth = self.tree.truth.moved(self.tree.cloud.to_input.inverse())
+        away, row = cKDTree(truth.xyz).query(field.xyz + field.offset)
+        wood = 1 - field.role[:, Role.NO_WOOD] >= LEAST_WOOD
+        other = np.where(wood, int(Role.SPUR_OR_SHOOT), int(Role.NO_WOOD))
+        role = np.where(away <= ON_WOOD_M, truth.label[np.minimum(row, len(truth) - 1)], other)
+        told = np.full(field.role.shape, (1 - SURE) / (len(Role) - 1))
+        told[np.arange(len(role)), role] = SURE
+        return replace(field, role=told)

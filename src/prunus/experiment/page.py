@@ -43,7 +43,7 @@ th{color:#666;border-bottom:1px solid #ccc}td:first-child,th:first-child{text-al
 """
 
 
-EDGE_HEAD = ["edges", "in the paper", "paper's network", "ours"]
+EDGE_HEAD = ["edges", "in the paper", "here"]
 
 
 def main_ways(results: Record) -> tuple[dict[str, Record], dict[str, Record]]:
@@ -102,14 +102,13 @@ def habit_rows(ways: dict[str, Record]) -> list[list[str]]:
 
 
 def edge_rows(edges: dict[str, Any]) -> list[list[str]]:
-    """The paper's two tables of edge confidence: its own figures, its network here, ours."""
+    """The paper's two tables of edge confidence: its own figures, and its network here."""
     rows = []
     for key in ("validity_accuracy", "category_accuracy", "calibration_error"):
-        cells = [edges[name][key] for name in edges]
         in_paper: Any = PAPER.get(key)
-        rows.append([key.replace("_", " "), _percent(in_paper), *map(_percent, cells)])
+        rows.append([key.replace("_", " "), _percent(in_paper), _percent(edges[key])])
     for key in ("valid", "invalid", *(label.word for label in Label), "other"):
-        both: list[Any] = [PAPER[key], *(edges[name][key] for name in edges)]
+        both: list[Any] = [PAPER[key], edges[key]]
         pairs = [" / ".join(_percent(value) for value in pair) for pair in both]
         rows.append([f"{key.replace('_', ' ')}: precision / recall", *pairs])
     return rows

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -13,68 +14,111 @@ from prunus.evaluate.correction import corrected
 from prunus.evaluate.curves import curve_measures
 from prunus.evaluate.edits import Edits, edits
 from prunus.evaluate.found import branch_measures
-from prunus.experiment.orchard import OracleScorer, Tree
+from prunus.experiment.orchard import OracleScorer, Tree, TrueClasses
+from prunus.field.votes import gather_votes
+from prunus.growth.graph import join_threads
+from prunus.growth.parents import keep_parents
 from prunus.io.tables import without_nan
 from prunus.measure import shown
+from prunus.method import Method
 from prunus.model import Label, Skeleton
+from prunus.paper.confidence import ConstantScorer
+from prunus.paper.score import skel_score
 from prunus.params import Parameters
 from prunus.pipeline import follow
 from prunus.result import Result
-from prunus.search import learned_score_of, shipped_score, skel_score
 
 Record = dict[str, Any]
 """What is measured of a trial: plain numbers and words, as they go into results.json."""
 
 
+Made = Callable[[Tree], Method]
+"""The method of a row, for a tree: those that are told something true of it need to know it."""
+
+
 @dataclass(frozen=True)
 class Way:
-    """A row of every table: its parameters, whether the edges are told, whether the base is."""
+    """A row of every table: its method, whose parameters it goes by, whether the base is given."""
 
     name: str
     about: str
+    method: Made
     params: Parameters
-    oracle: bool = False
     base: bool = True
 
 
 BY_HAND = "corrected by hand"
 """The way of trials that people corrected: the machine's skeleton as they found it."""
 
+PAPER, DEFAULT = Parameters.paper(), Parameters()
+
+
+def _paper(tree: Tree) -> Method:
+    return Method.paper()
+
+
+def _default(tree: Tree) -> Method:
+    return Method.default()
+
+
+def _told_edges(tree: Tree) -> Method:
+    return Method.paper().scored_by(OracleScorer(tree))
+
+
+def _told_classes(tree: Tree) -> Method:
+    return _seeing(see=TrueClasses(tree))
+
+
 WAYS = (
-    Way("paper", "the method as the paper has it, with its network", Parameters.paper()),
-    Way("default", "ours", Parameters()),
-    Way("default, base found", "ours, the base not given", Parameters(), base=False),
-    Way(
-        "paper, oracle", "the paper's, every candidate edge told truly",
-        Parameters.paper(), oracle=True,
-    ),
-)  # fmt: skip
+    Way("paper", "the method as the paper has it, with its network", _paper, PAPER),
+    Way("default", "ours, the base given", _default, DEFAULT),
+    Way("default, base found", "ours, the base not given", _default, DEFAULT, base=False),
+    Way("default, true classes", "ours, told of all wood what it is", _told_classes, DEFAULT),
+    Way("paper, oracle", "the paper's, every candidate edge told truly", _told_edges, PAPER),
+)
 
 
-_PAPER = Parameters.paper()
+def _seeing(**parts: Any) -> Method:
+    method = Method.default()
+    evidence: Any = method.evidence
+    return replace(method, evidence=replace(evidence, **parts))
+
+
+def _growing(**parts: Any) -> Method:
+    method = Method.default()
+    tree: Any = method.tree
+    return replace(method, tree=replace(tree, **parts))
+
+
+def _with_wires(tree: Tree) -> Method:
+    return _seeing(clean=lambda field, rng: field)
+
+
+def _without_votes(tree: Tree) -> Method:
+    return _seeing(vote=lambda field: gather_votes(replace(field, offset=0 * field.offset)))
+
+
+def _without_bridges(tree: Tree) -> Method:
+    return _seeing(join=lambda threads, gap_max: join_threads(threads, 0.0))
+
+
+def _as_cut(tree: Tree) -> Method:
+    return _growing(choose=keep_parents)
+
+
+def _alike(tree: Tree) -> Method:
+    return Method.paper().scored_by(ConstantScorer(SURE))
+
+
+SURE = 0.9
 ABLATIONS = (
-    Way(
-        "paper + our network", "the paper's, but our network",
-        _PAPER.changed("confidence", edge_net="ours"),
-    ),
-    Way(
-        "paper + floor", "the paper's, hopeless edges left out",
-        _PAPER.changed("confidence", floor=0.30),
-    ),
-    Way("paper + refine", "the paper's, refined", _PAPER.changed("search", refine=True)),
-    Way(
-        "paper + stubs", "the paper's, stubs dropped", _PAPER.changed("leaders", min_length=0.35)
-    ),
-    Way(
-        "paper + several", "the paper's, several side branches a piece",
-        _PAPER.changed("side_branches", several=True),
-    ),
-    Way(
-        "paper + axes", "the paper's, superpoints on axes",
-        _PAPER.changed("superpoints", place="axes"),
-    ),
-)  # fmt: skip
-"""What each part beyond the paper brings its method."""
+    Way("default - votes", "ours, voxels stay where they are", _without_votes, DEFAULT),
+    Way("default - wires", "ours, wires left in", _with_wires, DEFAULT),
+    Way("default - bridges", "ours, no gap bridged", _without_bridges, DEFAULT),
+    Way("default - parents", "ours, branches hang where they grew", _as_cut, DEFAULT),
+    Way("paper - network", "the paper's, every edge as sure as any other", _alike, PAPER),
+)
+"""What each part brings: a method with one part another."""
 
 
 def ways(ablation: bool) -> tuple[Way, ...]:
@@ -86,9 +130,9 @@ def trial(tree: Tree, draw: int, way: Way) -> Record:
     """Skeletonize one draw of a tree, correct it, measure it."""
     cloud = tree.cloud
     base = tree.truth.xyz[0] if way.base else None
-    scorer = OracleScorer(tree) if way.oracle else None
+    method = way.method(tree)
     cpu = time.process_time()
-    result = follow(cloud, base, way.params, draw, scorer)
+    result = follow(cloud, base, way.params, draw, method=method)
     cpu = time.process_time() - cpu
     return {
         "tree": tree.name,
@@ -149,13 +193,11 @@ def _scores(found: Skeleton, right: Skeleton, result: Result) -> Record:
 
 
 def score_of(skeleton: Skeleton, result: Result) -> float:
-    """What a skeleton on the superpoints of a result scores under the score that made the result.
+    """SkelScore of a skeleton on the superpoints of a result.
 
     Edges that are no candidates have no confidence.
     """
     graph = result.graph
-    if result.params.method == "learned":
-        return learned_score_of(skeleton, graph, shipped_score())
     known = dict(zip(map(tuple, graph.edges.tolist()), graph.confidence.tolist(), strict=True))
     ends = np.sort(skeleton.superpoint[skeleton.edges], axis=1).tolist()
     confidence = [float("nan"), *(known.get((i, j), 0.0) for i, j in ends)]

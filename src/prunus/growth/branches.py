@@ -33,8 +33,14 @@ class Grown:
     parent: Ints
 
 
-def cut_branches(threads: Threads, ways: Ways, foot: int) -> Grown:
-    """The tree that grows from a foot."""
+def cut_branches(
+    threads: Threads,
+    ways: Ways,
+    foot: int,
+    branch_min: float = LEAST_M,
+    spur_min: float = LEAST_SPUR_M,
+) -> Grown:
+    """The tree that grows from a foot; shorter branches (metres) are none."""
     cover = np.maximum(threads.radius, THIN_M) + COVER_M
     own = ways.foot == foot
     covered, before = ~own, np.full(len(threads), NOWHERE)
@@ -46,7 +52,7 @@ def cut_branches(threads: Threads, ways: Ways, foot: int) -> Grown:
         if covered[tip] or inside[tip]:
             continue
         path = _way_back(ways.before, tip, inside)
-        if not _is_branch(threads, path, covered):
+        if not _is_branch(threads, path, covered, branch_min, spur_min):
             covered[path] = True
             continue
         path = _onto_host(threads.xyz, path, covered, inside)
@@ -67,12 +73,14 @@ def _way_back(before: Ints, tip: int, inside: Bools) -> Ints:
     return np.array(path)
 
 
-def _is_branch(threads: Threads, path: Ints, covered: Bools) -> bool:
+def _is_branch(
+    threads: Threads, path: Ints, covered: Bools, branch_min: float, spur_min: float
+) -> bool:
     """Whether enough of a path is not covered yet."""
     step = np.linalg.norm(np.diff(threads.xyz[path], axis=0), axis=1)
     new = ~covered[path[:-1]]
     spur = np.average(threads.role[path[:-1], Role.SPUR_OR_SHOOT], weights=new + 1e-9)
-    least = max(LEAST_SPUR_M if spur > SPUR else LEAST_M,
+    least = max(spur_min if spur > SPUR else branch_min,
                 0.8 * threads.radius[path[-1]] + OUT_OF_WOOD_M)  # fmt: skip
     return bool(step[new].sum() >= least)
 

@@ -58,8 +58,7 @@ def _superpoints(
     held = [np.concatenate([order[first[v] : first[v + 1]] for v in some]) if some else order[:0]
             for some in near]  # fmt: skip
     start = np.cumsum([0, *map(len, held)])
-    wood = np.full(len(threads), REACH_M / 2)
-    return Superpoints(cloud, threads.xyz, start, np.concatenate(held), REACH_M, wood)
+    return Superpoints(cloud, threads.xyz, start, np.concatenate(held), REACH_M)
 
 
 def _categories(role: Floats) -> Floats:

@@ -103,11 +103,11 @@ def confidence_of(threads: Threads, outward: Ints) -> Floats:
     return np.asarray(wood * np.clip(length / np.maximum(cost, 1e-9), 0.0, 1.0))
 
 
-def join_threads(threads: Threads) -> ThreadGraph:
-    """The graph of some threads."""
+def join_threads(threads: Threads, gap_max: float = GAPS_M[-1]) -> ThreadGraph:
+    """The graph of some threads, over gaps of `gap_max` metres at most."""
     near = threads.tree.query_pairs(NEAR_M, output_type="ndarray").astype(np.int64)
     edges = near
-    for reach in GAPS_M:
+    for reach in np.minimum(GAPS_M, gap_max).tolist():
         edges = np.concatenate([edges, _bridges(threads, edges, reach)])
     gap = np.arange(len(edges)) >= len(near)
     order = np.lexsort(edges.T[::-1])

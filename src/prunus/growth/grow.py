@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,11 +10,16 @@ import numpy as np
 from prunus.field.votes import Threads
 from prunus.growth.branches import Grown, cut_branches
 from prunus.growth.feet import find_feet, main_foot, nearest_foot
-from prunus.growth.graph import ThreadGraph, confidence_of, join_threads
+from prunus.growth.graph import ThreadGraph, confidence_of
+from prunus.growth.labels import Labelled
 from prunus.growth.parents import choose_parents
 from prunus.growth.ways import Ways, find_ways
 from prunus.model import Floats, Ints, Skeleton
 
+Cut = Callable[[Threads, Ways, int], Grown]
+"""Which branches grow from a foot."""
+Choose = Callable[[Threads, Grown], tuple[Grown, Labelled]]
+"""On what they hang, and their labels."""
 MOST_M = 0.05
 """An end is moved by so much at most."""
 
@@ -31,12 +37,12 @@ class Orchard:
     main: int
 
     @classmethod
-    def of(cls, threads: Threads, base: Floats | None = None, alone: bool = False) -> Orchard:
+    def of(cls, graph: ThreadGraph, base: Floats | None = None, alone: bool = False) -> Orchard:
         """The trees of some threads; meant is that at `base` (3,), or at which the scanner looks.
 
         Threads hold one node at least. `alone`: all is one tree.
         """
-        graph = join_threads(threads)
+        threads = graph.threads
         feet = find_feet(graph, None if base is None else nearest_foot(threads, base))
         ways = find_ways(graph, feet)
         main = main_foot(threads, ways.foot, feet) if base is None else int(feet[0])
@@ -45,10 +51,12 @@ class Orchard:
             ways = find_ways(graph, feet)
         return cls(graph=graph, feet=feet, ways=ways, main=main)
 
-    def tree_at(self, foot: int) -> Skeleton:
+    def tree_at(
+        self, foot: int, cut: Cut = cut_branches, choose: Choose = choose_parents
+    ) -> Skeleton:
         """The labelled tree that grows from a foot."""
         threads = self.graph.threads
-        grown, told = choose_parents(threads, cut_branches(threads, self.ways, foot))
+        grown, told = choose(threads, cut(threads, self.ways, foot))
         nodes = grown.nodes
         edges = np.column_stack([nodes[np.maximum(grown.parent, 0)], nodes])
         confidence = np.append(np.nan, confidence_of(threads, edges[1:]))

@@ -46,6 +46,12 @@ def choose_parents(threads: Threads, grown: Grown) -> tuple[Grown, Labelled]:
     return _in_order(grown.nodes, tree, told)
 
 
+def keep_parents(threads: Threads, grown: Grown) -> tuple[Grown, Labelled]:
+    """The tree as it grew, and its labels: in place of `choose_parents`."""
+    tree = Tree(threads.xyz[grown.nodes], grown.parent)
+    return _in_order(grown.nodes, tree, label_tree(tree, threads.role[grown.nodes]))
+
+
 def _in_order(nodes: Ints, tree: Tree, told: Labelled) -> tuple[Grown, Labelled]:
     order = np.array(tree.order)
     place = np.empty_like(order)

@@ -1,17 +1,15 @@
-"""Draw a cloud together onto the axes of its branches, and cover it along them.
+"""Draw a cloud together onto the axes of its branches.
 
 Each point goes to the line that best fits the points around it, across that line only; after a
 few rounds a branch is as thin as a thread, and where branches meet the threads meet.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from prunus.kernels.compiled import kernel
 from prunus.kernels.neighbours import within
-from prunus.model.arrays import GRID, Floats, Ints
+from prunus.model.arrays import GRID, Floats
 
-Flags = NDArray[np.bool_]
 TINY = 1e-12
 
 
@@ -91,34 +89,3 @@ def contract(
                 there[p, a] += np.rint(moved / GRID) * GRID
         here = there
     return here, axis, line, aside, around
-
-
-@kernel
-def cover_along(
-    xyz: Floats, axis: Floats, size: Ints, order: Ints, along: float, across: float
-) -> tuple[Ints, Ints]:
-    """Cover points by rods around uncovered ones, met in `order`: up to `along` to either end.
-
-    `across` is the radius of a rod. Returns the points (N,) chosen, and the sum of `size` (P,)
-    over the points (N,) that the rod of each holds.
-    """
-    start, members = within(xyz, xyz, np.sqrt(along * along + across * across))
-    covered: Flags = np.zeros(len(xyz), np.bool_)
-    chosen, held = np.empty(len(xyz), np.int64), np.zeros(len(xyz), np.int64)
-    N = 0
-    for p in order:
-        if covered[p]:
-            continue
-        for slot in range(start[p], start[p + 1]):
-            q = members[slot]
-            ahead, away = 0.0, 0.0
-            for a in range(3):
-                step = xyz[q, a] - xyz[p, a]
-                ahead += step * axis[p, a]
-                away += step * step
-            if abs(ahead) <= along and away - ahead * ahead <= across * across:
-                covered[q] = True
-                held[N] += size[q]
-        chosen[N] = p
-        N += 1
-    return chosen[:N].copy(), held[:N].copy()

@@ -83,31 +83,6 @@ def edge_image(points: Floats, ends: Floats, radius: float, shape: tuple[int, in
     return np.asarray(image / max(image.max(), 1))
 
 
-def edge_profile(
-    points: Floats, ends: Floats, radius: float, reach: float, along: int, rings: Iterable[float]
-) -> Floats:
-    """Points near either of two `ends` (2, 3), counted by place along their line and distance."""
-    near = (np.linalg.norm(points[:, None] - ends, axis=2) <= radius).any(axis=1)
-    local = points[near] - ends.mean(axis=0)
-    x = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
-    steps = np.linspace(-reach * radius, reach * radius, along + 1)
-    borders = [0, *(ring * radius for ring in rings)]
-    off = np.linalg.norm(np.cross(local, x), axis=1)
-    return np.asarray(np.histogram2d(local @ x, off, [steps, borders])[0])
-
-
-def edge_drift(points: Floats, ends: Floats, radius: float, reach: float, along: int) -> Floats:
-    """Mean offset (along, 3) from the line of two `ends` of the points in each bin along it."""
-    near = (np.linalg.norm(points[:, None] - ends, axis=2) <= radius).any(axis=1)
-    local = points[near] - ends.mean(axis=0)
-    x = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
-    off = local - np.outer(local @ x, x)
-    step = np.floor(((local @ x) / (2 * reach * radius) + 0.5) * along)
-    close = np.linalg.norm(off, axis=1) < radius
-    chosen = [off[close & (step == k)] for k in range(along)]
-    return np.array([o.mean(axis=0) / radius if len(o) else np.zeros(3) for o in chosen])
-
-
 def average_ranks(values: list[float]) -> list[float]:
     """Rank: the position in the sorted list, ties averaged, divided by how many there are."""
     ordered = sorted(values)

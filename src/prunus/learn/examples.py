@@ -1,4 +1,4 @@
-"""Examples to learn from: candidate edges of simulated scans as the networks see them.
+"""Examples to learn from: candidate edges of simulated scans as the network sees them.
 
 Every scan gives some graphs, of all that it holds or of the target alone as a person would leave
 it; the edges of each graph are seen again in another draw of the cloud, 20 000 to 100 000 points
@@ -23,11 +23,10 @@ from prunus.io.scans import ScannedTree, read_scan
 from prunus.learn.labels import UNTOLD, TrueWood, edge_labels
 from prunus.measure import counting_rows
 from prunus.model import Bools, CandidateGraph, Ints, Kind, PointCloud, Superpoints
+from prunus.paper.candidates import find_candidates
+from prunus.paper.images import description, edge_images
+from prunus.paper.superpoints import find_superpoints
 from prunus.params import Cover
-from prunus.stages.candidates import find_candidates
-from prunus.stages.context import Context, Inputs, context_of, description
-from prunus.stages.images import edge_images
-from prunus.stages.superpoints import find_superpoints
 from prunus.workers import in_order
 
 POINTS = (20_000, 100_000)
@@ -54,8 +53,7 @@ class Example:
     """
 
     images: NDArray[np.uint8]
-    described: Inputs
-    context: Context
+    described: NDArray[np.float32]
     category: Ints
 
     @property
@@ -128,11 +126,11 @@ def seen_again(graph: CandidateGraph, cloud: PointCloud) -> CandidateGraph:
     """The same edges in another draw of the same cloud."""
     under = graph.superpoints
     start, members = within(cloud.xyz, under.xyz, under.radius)
-    seen = Superpoints(cloud, under.xyz, start, members, under.radius, under.wood)
+    seen = Superpoints(cloud, under.xyz, start, members, under.radius)
     return CandidateGraph(seen, graph.edges)
 
 
 def example_of(graph: CandidateGraph, category: Ints) -> Example:
-    """What the networks see of a graph."""
+    """What the network sees of a graph."""
     images = np.rint(255 * edge_images(graph)).astype(np.uint8)
-    return Example(images, description(graph), context_of(graph), category)
+    return Example(images, description(graph), category)

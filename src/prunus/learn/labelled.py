@@ -24,9 +24,9 @@ from prunus.learn.examples import Example, drawn, example_of, seen_again
 from prunus.learn.labels import INVALID, SOME, UNTOLD
 from prunus.model import CandidateGraph, Ints, PointCloud
 from prunus.names import as_text
+from prunus.paper.candidates import find_candidates
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
-from prunus.stages.candidates import find_candidates
 from prunus.workers import in_order
 
 VIEWS = 4

@@ -1,7 +1,6 @@
-"""The edge networks: the paper's (Appendix A) and ours.
+"""The edge network of the paper (Appendix A).
 
-Both give seven numbers an edge: two for validity, five for the category of a valid edge. Letters:
-B or E edges, C channels, W edges met at one end, D width of a hidden layer.
+It gives seven numbers an edge: two for validity, five for the category of a valid edge. B edges.
 """
 
 from __future__ import annotations
@@ -9,9 +8,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
-from prunus.kernels.frames import HIGH, WIDE
-from prunus.kernels.profiles import ALONG, AROUND, STEPS
-from prunus.stages.context import EDGE_FEATURES, MEETING_FEATURES
+from prunus.paper.kernels.frames import HIGH, WIDE
 
 VALIDITY = 2
 OUTPUTS = 7
@@ -55,59 +52,6 @@ def pair(inward: int, outward: int) -> list[nn.Module]:
     """Two 3 x 3 convolutions with ReLU."""
     first = nn.Conv2d(inward, outward, 3, padding=1)
     return [first, nn.ReLU(), nn.Conv2d(outward, outward, 3, padding=1), nn.ReLU()]
-
-
-class ContextNet(nn.Module):
-    """Ours: each edge among the edges that it meets, some rounds of looking around.
-
-    An edge starts from its profile (read both ways, so that its ends can be swapped) and features.
-    In each round it hears from every edge that it meets, through a gate that knows how the two lie
-    to each other; it keeps the mean and the strongest of what it hears.
-    """
-
-    ROUNDS = 5
-    D = 64
-    HEARD = 32
-
-    def __init__(self) -> None:
-        super().__init__()
-        D, C = self.D, self.HEARD
-        shape = ALONG * AROUND + STEPS * STEPS
-        self.shape = nn.Sequential(
-            nn.Linear(shape, 2 * D), nn.ReLU(), nn.Linear(2 * D, D), nn.ReLU(), nn.Linear(D, D)
-        )
-        self.edge = nn.Sequential(nn.Linear(D + EDGE_FEATURES, D), nn.ReLU(), nn.Linear(D, D))
-        self.scale = nn.BatchNorm1d(EDGE_FEATURES)
-        self.meeting = nn.Sequential(nn.Linear(MEETING_FEATURES, C), nn.ReLU(), nn.Linear(C, C))
-        self.say = nn.ModuleList(nn.Linear(D, C) for _ in range(self.ROUNDS))
-        self.hear = nn.ModuleList(
-            nn.Sequential(nn.Linear(D + 2 * C, D), nn.ReLU(), nn.Linear(D, D))
-            for _ in range(self.ROUNDS)
-        )
-        self.norm = nn.ModuleList(nn.LayerNorm(D) for _ in range(self.ROUNDS))
-        self.last = nn.Sequential(
-            nn.Linear(D, D), nn.ReLU(), nn.Dropout(0.1), nn.Linear(D, OUTPUTS)
-        )
-
-    def forward(
-        self, profile: Tensor, bend: Tensor, edge: Tensor, met: Tensor, meeting: Tensor
-    ) -> Tensor:
-        """Seven numbers (E, 7) from the fields of a `stages.context.Context`."""
-        there = torch.cat([profile.flatten(1), bend.flatten(1)], dim=1)
-        back = torch.cat([profile.flip(1).flatten(1), bend.flip(1, 2).flatten(1)], dim=1)
-        both = self.shape(there) + self.shape(back)
-        state = self.edge(torch.cat([both, self.scale(edge)], dim=1))
-        any_met = meeting[:, :, -1:]
-        gate = self.meeting(meeting) * any_met
-        count = any_met.sum(dim=1).clamp(min=1)
-        where = met.clamp(min=0)
-        for say, hear, norm in zip(self.say, self.hear, self.norm, strict=True):
-            heard = say(norm(state))[where] * gate
-            state = state + hear(
-                torch.cat([state, heard.sum(dim=1) / count, heard.amax(dim=1)], dim=1)
-            )
-        found: Tensor = self.last(state)
-        return found
 
 
 class Calibrated(nn.Module):

@@ -1,17 +1,14 @@
-"""Recipes: what each network is shown in training, in which batches, with what steps.
+"""The recipe: what the network is shown in training, in which batches, with what steps.
 
-The paper's network learns from edges drawn so that the classes are even; ours from whole graphs,
-rare categories weighing more.
+It learns from edges drawn so that the classes are even.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import torch
@@ -19,42 +16,19 @@ from torch import Tensor, nn
 
 from prunus.learn.examples import Example
 from prunus.learn.labels import INVALID, SOME
-from prunus.learn.net import ContextNet, PaperNet
+from prunus.learn.net import PaperNet
 from prunus.learn.start import start_from
 from prunus.model import Ints
 
-INPUTS = {
-    "paper": ("image", "description"),
-    "ours": ("profile", "bend", "edge", "met", "meeting"),
-}
-"""Names of the inputs of the exported networks; their outputs are confidence and category."""
+INPUTS = ("image", "description")
+"""Names of the inputs of the exported network; its outputs are confidence and category."""
 
 Batch = tuple[tuple[Tensor, ...], Tensor]
 """Inputs of a network, and the category (E,) of each edge."""
 
 
-class Recipe(Protocol):
-    """How one network is trained."""
-
-    rate: float
-    epochs: int
-    weights: Tensor | None
-    """Of the five categories in the category loss."""
-    start: Path | None
-    """The exported network to go on from."""
-
-    def network(self) -> nn.Module:
-        """The network as training begins."""
-
-    def batches(self, examples: list[Example], rng: np.random.Generator) -> Iterator[Batch]:
-        """One epoch's batches."""
-
-    def judged(self, examples: list[Example]) -> Iterator[Batch]:
-        """Edges to judge a network by, as often valid and of each category as they come."""
-
-
 @dataclass
-class PaperRecipe:
+class Recipe:
     """Edges drawn from all examples so that the classes are even."""
 
     epochs: int = 10
@@ -62,8 +36,8 @@ class PaperRecipe:
     edges: int = 60_000
     size: int = 256
     every: int = 10
-    weights: Tensor | None = None
     start: Path | None = None
+    """The exported network to go on from."""
 
     def network(self) -> nn.Module:
         """Appendix A."""
@@ -102,64 +76,9 @@ class PaperRecipe:
         return tensors(images, example.described[rows]), category
 
 
-@dataclass
-class ContextRecipe:
-    """Whole graphs, a few at a time."""
-
-    epochs: int = 12
-    rate: float = 2e-3
-    graphs: int = 4
-    weights: Tensor | None = None
-    start: Path | None = None
-
-    def network(self) -> nn.Module:
-        """Each edge among those that it meets."""
-        return begun(ContextNet(), self.start)
-
-    def batches(self, examples: list[Example], rng: np.random.Generator) -> Iterator[Batch]:
-        """Batches of `graphs` graphs side by side, each example once.
-
-        Where there are two kinds of them, as many of each: those of the rarer more than once, or
-        in going on from a network not all of the other.
-        """
-        by_kind = kinds(examples)
-        counts = [len(own) for own in by_kind]
-        count = max(counts) if self.start is None else min(counts)
-        return taking_turns([self._drawn(own, count, rng) for own in by_kind])
-
-    def _drawn(
-        self, examples: list[Example], count: int, rng: np.random.Generator
-    ) -> Iterator[Batch]:
-        rounds = math.ceil(count / len(examples))
-        order = np.concatenate([rng.permutation(len(examples)) for _ in range(rounds)])[:count]
-        for rows in np.array_split(order, math.ceil(len(order) / self.graphs)):
-            yield side_by_side([examples[row] for row in rows])
-
-    def judged(self, examples: list[Example]) -> Iterator[Batch]:
-        """Every graph, whole."""
-        yield from map(self.seen, examples)
-
-    def seen(self, example: Example) -> Batch:
-        """The fields of the context of an example."""
-        return side_by_side([example])
-
-
-RECIPES: dict[str, type[PaperRecipe] | type[ContextRecipe]] = {
-    "paper": PaperRecipe,
-    "ours": ContextRecipe,
-}
-FURTHER: dict[str, Callable[..., PaperRecipe | ContextRecipe]] = {
-    "paper": partial(PaperRecipe, epochs=4, rate=1e-4, edges=6000),
-    "ours": partial(ContextRecipe, epochs=4, rate=3e-4),
-}
-"""For going on from a network: fewer and smaller steps, so that it forgets little."""
-
-
-def recipe_for(
-    name: str, start: Path | None, epochs: int | None = None
-) -> PaperRecipe | ContextRecipe:
-    """The recipe of a network: from scratch, or gently on from an exported one."""
-    recipe = RECIPES[name]() if start is None else FURTHER[name](start=start)
+def recipe_for(start: Path | None, epochs: int | None = None) -> Recipe:
+    """From scratch, or from an exported network: fewer and smaller steps then, to forget little."""
+    recipe = Recipe() if start is None else Recipe(start=start, epochs=4, rate=1e-4, edges=6000)
     recipe.epochs = epochs or recipe.epochs
     return recipe
 
@@ -180,22 +99,6 @@ def taking_turns(several: list[Iterator[Batch]]) -> Iterator[Batch]:
 def begun(net: nn.Module, start: Path | None) -> nn.Module:
     """The network with the parameters of the file that it starts from, if any."""
     return net if start is None else start_from(start, net)
-
-
-def side_by_side(examples: list[Example]) -> Batch:
-    """Some graphs as one that falls in pieces."""
-    offsets = np.cumsum([0, *(len(one.category) for one in examples[:-1])])
-    met = [
-        np.where(one.context.met < 0, -1, one.context.met + offset)
-        for one, offset in zip(examples, offsets, strict=True)
-    ]
-    names = ("profile", "bend", "edge", "meeting")
-    profile, bend, edge, meeting = (
-        np.concatenate([getattr(one.context, name) for one in examples]) for name in names
-    )
-    category = np.concatenate([one.category for one in examples])
-    inputs = tensors(profile, bend, edge, np.concatenate(met), meeting)
-    return inputs, torch.from_numpy(category)
 
 
 def tensors(*arrays: Any) -> tuple[Tensor, ...]:

@@ -32,11 +32,6 @@ def start_from(path: Path, net: nn.Module) -> nn.Module:
     return net
 
 
-def go_on_from(path: Path, net: nn.Module) -> None:
-    """Give a network that needs no calibration the parameters of an ONNX file."""
-    _load(net, onnx_graph(path), path)
-
-
 def _load(net: nn.Module, graph: Any, path: Path) -> None:
     held = _parameters(graph)
     wanted = {name: own for name, own in net.state_dict().items() if own.is_floating_point()}

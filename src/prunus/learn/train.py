@@ -18,19 +18,18 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-from prunus.io.labels import CATEGORIES
 from prunus.learn.examples import Example
 from prunus.learn.labels import SOME, UNTOLD
 from prunus.learn.logistic import fit_logistic
 from prunus.learn.net import VALIDITY, Calibrated
-from prunus.learn.recipes import INPUTS, ContextRecipe, PaperRecipe, Recipe
+from prunus.learn.recipes import INPUTS, Recipe
 from prunus.model import Floats, Ints
 
 SHARES = (2 / 3, 1 / 3)
 """Weights of the validity and the category loss."""
 
 
-def losses(found: Tensor, category: Tensor, weights: Tensor | None = None) -> tuple[Tensor, Tensor]:
+def losses(found: Tensor, category: Tensor) -> tuple[Tensor, Tensor]:
     """Cross entropy of validity over all edges, and of the category over the valid ones.
 
     Over those of which it was told, that is.
@@ -41,13 +40,13 @@ def losses(found: Tensor, category: Tensor, weights: Tensor | None = None) -> tu
     validity = functional.cross_entropy(found[told, :VALIDITY], (category[told] >= 0).long())
     if not named.any():
         return validity, 0 * validity
-    kind = functional.cross_entropy(found[named, VALIDITY:], category[named], weights)
+    kind = functional.cross_entropy(found[named, VALIDITY:], category[named])
     return validity, kind
 
 
-def combined(found: Tensor, category: Tensor, weights: Tensor | None = None) -> Tensor:
+def combined(found: Tensor, category: Tensor) -> Tensor:
     """The two losses in their shares."""
-    validity, kind = losses(found, category, weights)
+    validity, kind = losses(found, category)
     return SHARES[0] * validity + SHARES[1] * kind
 
 
@@ -68,7 +67,7 @@ def train(
         net.train()
         for inputs, category in recipe.batches(training, rng):
             optimizer.zero_grad()
-            combined(net(*inputs), category, recipe.weights).backward()  # type: ignore[no-untyped-call]
+            combined(net(*inputs), category).backward()  # type: ignore[no-untyped-call]
             nn.utils.clip_grad_norm_(net.parameters(), 1.0)
             optimizer.step()
             slower.step()
@@ -84,15 +83,6 @@ def validation_loss(net: nn.Module, recipe: Recipe, examples: list[Example]) -> 
     net.eval()
     found = [float(combined(net(*seen), category)) for seen, category in recipe.judged(examples)]
     return float(np.mean(found))
-
-
-def even_weights(examples: list[Example]) -> Tensor:
-    """Weights (5,) of the categories: rare ones weigh more, by the root of their rarity."""
-    category = np.concatenate([one.category for one in examples])
-    named = (category >= 0) & (category < SOME)
-    counts = np.bincount(category[named], minlength=len(CATEGORIES))
-    weights = 1 / np.sqrt(np.maximum(counts, 1))
-    return torch.tensor(weights / weights.mean(), dtype=torch.float32)
 
 
 def finished(net: nn.Module, recipe: Recipe, validation: list[Example]) -> Calibrated:
@@ -148,12 +138,10 @@ def predict(net: Calibrated, recipe: Recipe, examples: list[Example]) -> tuple[F
     return confidence[told].double().numpy(), likeliest.numpy(), truth[told].numpy()
 
 
-def onnx_bytes(
-    net: Calibrated, recipe: PaperRecipe | ContextRecipe, name: str, example: Example
-) -> bytes:
+def onnx_bytes(net: Calibrated, recipe: Recipe, example: Example) -> bytes:
     """The network as an ONNX file, for any number of edges."""
     inputs, _ = recipe.seen(example)
-    return exported(net, inputs, INPUTS[name], ("confidence", "category"), "edges")
+    return exported(net, inputs, INPUTS, ("confidence", "category"), "edges")
 
 
 def exported(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from prunus.errors import PrunusError
-from prunus.model.arrays import Bools, Bytes, Floats, Ints, cubes, frozen, snapped
+from prunus.model.arrays import Bools, Bytes, Floats, Ints, frozen, snapped
 
 FRAMES: dict[str, Floats] = {
     "z-up": np.eye(3),
@@ -30,11 +30,6 @@ usual frame of each upward axis comes first. docs/frames.md has them all.
 ROW_TOLD = frozenset({"z-up-x-row", "optical", "camera-link"})
 """Frames that say where the row runs: along X, or across the line of sight. In the others only the
 upward axis is known."""
-
-
-CUBE_M, DENSEST, CHANCE = 0.02, 5.0, 12
-"""Side of the cubes in which density is looked at; the densest that stays as it is, in medians, and
-in points, since the density of a sparse cloud varies by chance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,24 +118,6 @@ class PointCloud:
         """The cloud of these rows only, in the same frame."""
         rgb = None if self.rgb is None else self.rgb[rows]
         return PointCloud(self.xyz[rows], self.to_input, rgb)
-
-    def evened(self, rng: np.random.Generator) -> PointCloud:
-        """The cloud without the surplus of places that are much denser than most.
-
-        No cube of 2 cm keeps more than five times the median of all cubes; which of its points
-        stay is random. So a trunk that a scanner passed ten times does not starve the twigs.
-        """
-        # Cubes about the middle: a cloud turned half round falls into the same ones.
-        cell = cubes(np.rint(self.xyz / CUBE_M), 1.0)
-        _, cube, count = np.unique(cell, return_inverse=True, return_counts=True)
-        most = max(CHANCE, int(DENSEST * np.median(count)))
-        if count.max() <= most:
-            return self
-        # Its place (P,) among the points of its cube, these in random order.
-        order = rng.permutation(len(self))
-        order = order[np.argsort(cube[order], kind="stable")]
-        place = np.arange(len(self)) - np.repeat(np.cumsum(count) - count, count)
-        return self.take(np.sort(order[place < most]))
 
     def sample(self, count: int | None, rng: np.random.Generator) -> PointCloud:
         """At most `count` points drawn at random without replacement (None keeps all)."""

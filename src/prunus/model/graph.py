@@ -15,8 +15,7 @@ class Superpoints:
     """Superpoints xyz (N, 3) and their points.
 
     Superpoint n has the points `members[start[n]:start[n + 1]]` of the cloud: those within
-    `radius` (r_super, metres) of it. Balls overlap, so membership is many-to-many. `wood` (N,) are
-    the metres of branch that it stands for, none counted twice.
+    `radius` (r_super, metres) of it. Balls overlap, so membership is many-to-many.
     """
 
     cloud: PointCloud
@@ -24,13 +23,11 @@ class Superpoints:
     start: Ints
     members: Ints
     radius: float
-    wood: Floats
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "xyz", frozen(self.xyz, np.float64, (None, 3)))
         object.__setattr__(self, "start", frozen(self.start, np.int64, (len(self.xyz) + 1,)))
         object.__setattr__(self, "members", frozen(self.members, np.int64, (None,)))
-        object.__setattr__(self, "wood", frozen(self.wood, np.float64, (len(self.xyz),)))
 
     def __len__(self) -> int:
         return len(self.xyz)
@@ -40,7 +37,7 @@ class Superpoints:
         """Every point its own superpoint: for graphs that come from elsewhere."""
         count = len(cloud)
         one_each = np.arange(count + 1), np.arange(count)
-        return cls(cloud, cloud.xyz, *one_each, radius, np.full(count, radius))
+        return cls(cloud, cloud.xyz, *one_each, radius)
 
     def points_near(self, nodes: Ints) -> Bools:
         """Which points (P,) belong to any of these superpoints."""

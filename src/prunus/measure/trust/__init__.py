@@ -13,16 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from prunus.measure.branches import branches
-from prunus.measure.trust import grown
-from prunus.measure.trust.evidence import Known, of_branches, of_edges
-from prunus.measure.trust.grown import KnownGrown
-from prunus.measure.trust.model import WHOLE, GrownModel, Model, grown_model, shipped_model
+from prunus.measure.trust.evidence import Known, of_branches, of_edges, of_tree
+from prunus.measure.trust.model import WHOLE, Model, Parts, shipped_model
 from prunus.model import Floats
 
-__all__ = [
-    "GrownModel", "Known", "KnownGrown", "Model", "Trust", "grown_model", "shipped_model",
-    "trust_in", "trust_in_grown",
-]  # fmt: skip
+__all__ = ["Known", "Model", "Parts", "Trust", "shipped_model", "trust_in"]
 
 WOOD = 0.60
 """What is less likely a bare tree lowers all trust, and is said."""
@@ -34,10 +29,10 @@ class Trust:
 
     edge (M,): the edge into each row needs no correction, NaN at row 0; branch (B,): the branch is
     right, in the order of `measure.branches`; tree: the share of its edges, by their number, that
-    need no correction. Of a tree that grew on votes, each how likely: `meant`, that no other in
-    view is the tree that is meant; `wood`, that it is a bare tree at all; `form`, that it is
-    trained as its labels have it. The first counts in all trust, the second where it is low; where
-    the third is, trust is in the geometry: that an edge lies on wood, and a branch on one.
+    need no correction. Each how likely: `meant`, that no other in view is the tree that is meant;
+    `wood`, that it is a bare tree at all; `form`, that it is trained as its labels have it. The
+    first counts in all trust, the second where it is low; where the third is, trust is in the
+    geometry: that an edge lies on wood, and a branch on one.
     """
 
     edge: Floats
@@ -51,22 +46,11 @@ class Trust:
 def trust_in(known: Known, model: Model | None = None) -> Trust:
     """How far to trust a skeleton, by all that is known of it."""
     model = model or shipped_model()
-    found = branches(known.skeleton)
-    branch = np.array(
-        [model.branch[one.label](told) for one, told in zip(found, of_branches(known), strict=True)]
-    )
-    edge = np.array([np.nan, *map(model.edge, of_edges(known, branch))])
-    return Trust(edge, branch, float(np.nanmean(edge)) if len(edge) > 1 else 0.0)
-
-
-def trust_in_grown(known: KnownGrown, model: GrownModel | None = None) -> Trust:
-    """How far to trust a tree that grew on votes."""
-    model = model or grown_model()
-    evidence = grown.of_tree(known)
+    evidence = of_tree(known)
     meant, wood, form = (model.whole[name](evidence) for name in WHOLE)
     found = branches(known.skeleton)
-    told = zip(found, grown.of_branches(known, form), strict=True)
+    told = zip(found, of_branches(known, form), strict=True)
     branch = np.array([model.parts.branch[one.label](said) for one, said in told])
-    edge = np.array([np.nan, *map(model.parts.edge, grown.of_edges(known, branch, form))])
+    edge = np.array([np.nan, *map(model.parts.edge, of_edges(known, branch, form))])
     sure = meant * min(1.0, wood / WOOD)
     return Trust(sure * edge, sure * branch, sure * float(np.nanmean(edge)), meant, wood, form)

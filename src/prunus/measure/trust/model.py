@@ -5,66 +5,58 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from prunus.measure.odds import Odds
 from prunus.model import Label
 from prunus.reading import read_toml
 
 SHIPPED = Path(__file__).parents[2] / "weights" / "trust.toml"
-GROWN = SHIPPED.with_name("trust_grown.toml")
-"""The models that the package ships: of trees that were searched for, and that grew on votes."""
+"""The model that the package ships."""
 WHOLE = ("meant", "wood", "form")
-"""What is asked of a grown tree as a whole, see `GrownModel`."""
+"""What is asked of a tree as a whole, see `Model`."""
 
 
 @dataclass(frozen=True)
-class Model:
+class Parts:
     """That a branch of each label is right, and that an edge needs no correction."""
 
     branch: dict[Label, Odds]
     edge: Odds
 
     @classmethod
-    def from_toml(cls, path: Path) -> Model:
-        """The model in a file."""
-        held = read_toml(path)
+    def of(cls, held: dict[str, Any]) -> Parts:
+        """As in a file."""
         return cls({label: Odds.of(held[label.word]) for label in Label}, Odds.of(held["edge"]))
 
-    def to_toml(self) -> str:
-        """The file that `from_toml` reads."""
-        lines = ["# How far to trust branches and edges, made by `python -m bench.fit_trust`."]
-        for label in Label:
-            lines += self.branch[label].lines(label.word)
-        return "\n".join([*lines, *self.edge.lines("edge")]) + "\n"
+    def lines(self) -> list[str]:
+        """The lines of a file that `of` understands."""
+        own = [line for label in Label for line in self.branch[label].lines(label.word)]
+        return [*own, *self.edge.lines("edge")]
 
 
 @dataclass(frozen=True)
-class GrownModel:
-    """The same of a grown tree, should it be the tree that is meant, and a tree.
+class Model:
+    """How likely parts are right, should it be the tree that is meant, and a tree.
 
     whole: that it is the tree that is `meant`, that it is a bare tree of `wood`, and that it is of
     the training `form` whose labels it has.
     """
 
-    parts: Model
+    parts: Parts
     whole: dict[str, Odds]
 
     @classmethod
-    def from_toml(cls, path: Path) -> GrownModel:
+    def from_toml(cls, path: Path) -> Model:
         """The model in a file."""
         held = read_toml(path)
-        return cls(Model.from_toml(path), {name: Odds.of(held[name]) for name in WHOLE})
+        return cls(Parts.of(held), {name: Odds.of(held[name]) for name in WHOLE})
 
     def to_toml(self) -> str:
         """The file that `from_toml` reads."""
-        lines = [line for name in WHOLE for line in self.whole[name].lines(name)]
-        return self.parts.to_toml() + "\n".join(lines) + "\n"
-
-
-@cache
-def grown_model() -> GrownModel:
-    """The model of grown trees that the package ships."""
-    return GrownModel.from_toml(GROWN)
+        head = "# How far to trust branches and edges, made by `python -m bench.fit_trust`."
+        whole = [line for name in WHOLE for line in self.whole[name].lines(name)]
+        return "\n".join([head, *self.parts.lines(), *whole]) + "\n"
 
 
 @cache

@@ -14,10 +14,10 @@ from prunus.corrections import Rebuild, Work
 from prunus.errors import PrunusError
 from prunus.io.labels import CATEGORIES, Category, LabelHead
 from prunus.model import ScoredGraph
-from prunus.stages.candidates import find_candidates
-from prunus.stages.confidence import score_edges
-from prunus.stages.images import edge_images
-from prunus.stages.networks import NetworkScorer
+from prunus.paper.candidates import find_candidates
+from prunus.paper.confidence import score_edges
+from prunus.paper.images import edge_images
+from prunus.paper.networks import NetworkScorer
 from prunus.studio.modes.mode import Key, Mode
 from prunus.studio.picking import Ray, nearest_edge
 from prunus.studio.queue import Queue
@@ -182,8 +182,7 @@ def queue_of(work: Work) -> Queue:
             "version_of_prunus": __version__,
         }
     )
-    scorer = NetworkScorer.shipped(work.settings.params.confidence.edge_net)
-    every = score_edges(find_candidates(state.result.graph.superpoints), scorer)
+    every = score_edges(find_candidates(state.result.graph.superpoints), NetworkScorer())
     return Queue.of(every, state.scan.to_input, work.folder / "labels.jsonl", head)
 
 
