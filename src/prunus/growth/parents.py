@@ -26,8 +26,9 @@ COST = 0.7
 """What a metre of the cost to grow over an edge is worth, in metres of doubtful labels."""
 MORE = 0.02
 """A place is better by at least so much."""
-BETWEEN = 3
-"""A way is looked at in so many places whether there is wood."""
+BETWEEN = 4
+"""A way is looked at in so many places whether there is wood; none is as near to one end as to the
+other, where rounding would decide."""
 LEAST_M = 0.05
 """Shorter branches stay where they are."""
 
