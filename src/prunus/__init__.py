@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from prunus.intake import read_cloud as read_cloud
     from prunus.io.skeletons import read_skeleton as read_skeleton
     from prunus.io.skeletons import write_skeleton as write_skeleton
+    from prunus.method import Method as Method
     from prunus.model import Label as Label
     from prunus.model import PointCloud as PointCloud
     from prunus.model import Skeleton as Skeleton
@@ -32,6 +33,7 @@ _HOME = {
     "EdgeScorer": "prunus.paper.confidence",
     "GraphSkeleton": "prunus.paper.graphs",
     "Label": "prunus.model",
+    "Method": "prunus.method",
     "Parameters": "prunus.params",
     "PointCloud": "prunus.model",
     "PrunusError": "prunus.errors",

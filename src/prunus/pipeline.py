@@ -28,19 +28,21 @@ def skeletonize(
     params: Parameters | Mapping[str, Any] | None = None,
     seed: int = 0,
     scorer: EdgeScorer | None = None,
+    method: Method | None = None,
 ) -> Result:
     """Turn a cloud into a labelled skeleton.
 
     cloud: points (P, 3) in metres, Z up and X along the row; for another frame a `PointCloud`.
     base: a point (3,) where the trunk meets the ground, in the frame of the input; None finds it.
-    params: also as nested dicts. scorer: your own, which has to keep to its range.
+    params: also as nested dicts. scorer: your own, which has to keep to its range. method: one with
+    a part replaced; None: that of the parameters.
     Same input, parameters and seed give the same skeleton, bit for bit.
     Raises PrunusError naming the argument that is wrong; NoTreeError where the cloud holds no tree
     that can be followed, with the reason and what to try.
     """
     cloud = cloud if isinstance(cloud, PointCloud) else PointCloud.from_xyz(cloud)
     with explaining(cloud):
-        return _judged(follow(cloud, base, params, seed, scorer))
+        return _judged(follow(cloud, base, params, seed, scorer, method))
 
 
 def follow(
@@ -51,10 +53,7 @@ def follow(
     scorer: EdgeScorer | None = None,
     method: Method | None = None,
 ) -> Result:
-    """What `skeletonize` finds, tree or not: for experiments, which count the failures too.
-
-    method: one with another part than that of the parameters.
-    """
+    """What `skeletonize` finds, tree or not: for experiments, which count the failures too."""
     at = None if base is None else cloud.to_input.inverse().apply(_point(base))
     params, seed = checked_params(params), checked_seed(seed)
     method = Method.of(params) if method is None else method
