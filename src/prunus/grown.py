@@ -111,7 +111,7 @@ class Votes:
         NoTreeError where nothing is wood; PrunusError where the base is far from any.
         """
         with timed(seconds, "field"):
-            drawn = cloud.sample(params.input.count, rng)
+            drawn = cloud.sample_evenly(params.input.count, rng)
             voxels = voxels_of(drawn.xyz)
             field = self.clean(self.see(voxels), rng)
         with timed(seconds, "votes"):

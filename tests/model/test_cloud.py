@@ -29,6 +29,30 @@ def test_a_sample_is_some_of_the_points_each_once(rng: np.random.Generator) -> N
     assert drawn.rgb is not None and len(drawn.rgb) == 20
     assert cloud.sample(None, rng) is cloud
     assert cloud.sample(50, rng) is cloud
+    assert cloud.sample_evenly(None, rng) is cloud
+    assert cloud.sample_evenly(50, rng) is cloud
+
+
+def test_a_trunk_scanned_much_denser_leaves_its_share_to_the_twigs(
+    rng: np.random.Generator,
+) -> None:
+    trunk, twigs = (
+        rng.random((90_000, 3)) * [0.1, 0.1, 1],
+        1 + rng.random((10_000, 3)) * [1, 0.1, 1],
+    )
+    cloud = PointCloud.from_xyz(np.concatenate([trunk, twigs]))
+    drawn = cloud.sample_evenly(10_000, rng)
+    place = cloud.to_input.apply(drawn.xyz)
+    assert (place[:, 0] > 0.9).sum() > 3 * 1000
+    assert len(np.unique(drawn.xyz, axis=0)) == 10_000
+
+
+@pytest.mark.parametrize("count", [500, 20_000, 200_000])
+def test_half_of_an_even_cloud_is_drawn_evenly(rng: np.random.Generator, count: int) -> None:
+    cloud = PointCloud.from_xyz(rng.random((count, 3)) * [1, 1, 0.1])
+    drawn = cloud.sample_evenly(count // 2, rng)
+    assert len(drawn) == count // 2
+    assert np.abs(drawn.xyz.mean(axis=0)).max() < 0.05
 
 
 @pytest.mark.parametrize(

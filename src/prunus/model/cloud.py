@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from prunus.errors import PrunusError
-from prunus.model.arrays import Bools, Bytes, Floats, Ints, frozen, snapped
+from prunus.model.arrays import Bools, Bytes, Floats, Ints, cubes, frozen, snapped
 
 FRAMES: dict[str, Floats] = {
     "z-up": np.eye(3),
@@ -54,6 +54,10 @@ class RigidMotion:
     def inverse(self) -> RigidMotion:
         """The motion back."""
         return RigidMotion(self.rotation.T, -self.rotation.T @ self.translation)
+
+CUBE_M, DENSEST, CHANCE = 0.02, 5.0, 12
+"""Side of the cubes in which density is looked at; the densest that stays as it is, in medians, and
+in points, since the density of a sparse cloud varies by chance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +128,24 @@ class PointCloud:
         if count is None or count >= len(self):
             return self
         return self.take(np.sort(rng.choice(len(self), count, replace=False, shuffle=False)))
+
+    def sample_evenly(self, count: int | None, rng: np.random.Generator) -> PointCloud:
+        """At most `count` points, drawn evenly over space (None keeps all).
+
+        No cube of 2 cm keeps more than five times the median of all cubes; which of its points
+        stay is random. So a trunk that a scanner passed ten times does not starve the twigs.
+        """
+        if count is None or count >= len(self):
+            return self
+        # Cubes about the middle: a cloud turned half round falls into the same ones.
+        cell = cubes(np.rint(self.xyz / CUBE_M), 1.0)
+        _, cube, holds = np.unique(cell, return_inverse=True, return_counts=True)
+        most = max(CHANCE, int(DENSEST * np.median(holds)))
+        # Its place (P,) among the points of its cube, these in random order.
+        order = rng.permutation(len(self))
+        order = order[np.argsort(cube[order], kind="stable")]
+        place = np.arange(len(self)) - np.repeat(np.cumsum(holds) - holds, holds)
+        return self.take(np.sort(order[place < most])).sample(count, rng)
 
 
 def _points(xyz: ArrayLike) -> Floats:
