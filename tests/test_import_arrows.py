@@ -25,6 +25,7 @@ FLOORS = [
     {"pipeline", "intake"},
     {"plausible", "method"},
     {"paper"},
+    {"upright"},
     {"grown"},
     {"result"},
     {"sensing", "measure", "io", "field", "growth"},

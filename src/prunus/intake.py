@@ -6,12 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from prunus.errors import PrunusError
 from prunus.io.clouds import FileCloud
 from prunus.io.clouds import read_cloud as read_file
 from prunus.io.safely import path_of
-from prunus.model import FRAMES, PointCloud
-from prunus.sensing.stance import find_stance
+from prunus.model import FRAMES, Floats, PointCloud
+from prunus.sensing.stance import Stance, find_stance
+from prunus.upright import surest_frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +45,7 @@ def open_scan(path: str | Path, frame: str = "auto", unit: str | None = None) ->
     if not isinstance(unit, str | None):
         raise PrunusError(f"unknown unit {unit!r}; expected text")
     file = read_file(path_of(path), unit)
-    stance = find_stance(file.xyz, frame)
+    stance = _stance(file.xyz, frame)
     cloud = PointCloud.from_xyz(file.xyz, stance.frame, file.rgb, stance.turn)
     return Scan(cloud, file, stance.frame, [*file.notes, *stance.notes])
 
@@ -50,3 +53,19 @@ def open_scan(path: str | Path, frame: str = "auto", unit: str | None = None) ->
 def read_cloud(path: str | Path, frame: str = "auto", unit: str | None = None) -> PointCloud:
     """Read a cloud into the house frame (see `open_scan`)."""
     return open_scan(path, frame, unit).cloud
+
+
+def _stance(xyz: Floats, frame: str) -> Stance:
+    """How points (P, 3) of a file stand; where that is not plain, as a tree is surest."""
+    stance = find_stance(xyz, frame)
+    if frame != "auto":
+        return stance
+    up = FRAMES[stance.frame][2]
+    others = dict.fromkeys(
+        name for name in (*stance.others, "z-up") if not np.allclose(FRAMES[name][2], up)
+    )
+    best = surest_frame(xyz, [stance.frame, *others])
+    if best == stance.frame:
+        return stance
+    because = f"frame {best}: a tree is surer in it than in {stance.frame}, as which it looks"
+    return find_stance(xyz, best, because)

@@ -14,10 +14,11 @@ from prunus.io.classes import check_ply, write_classes
 from prunus.io.clouds import FileCloud, check_kind, write_cloud
 from prunus.model import Floats, Skeleton
 from prunus.params import Parameters
-from prunus.plausible import LEAST_LENGTH_M, LEAST_LINEAR, LEAST_SURE, sureness
+from prunus.plausible import LEAST_LENGTH_M, LEAST_LINEAR, LEAST_SURE
 from prunus.sensing.diagnosis import explaining
 from prunus.sensing.isolated import Isolated
 from prunus.sensing.linear import linear_of
+from prunus.upright import sureness
 
 
 @dataclass(frozen=True, eq=False)

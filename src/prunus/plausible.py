@@ -12,11 +12,19 @@ import numpy as np
 
 from prunus.errors import NoTreeError
 from prunus.measure.remarks import explained_points
-from prunus.model import Label, Skeleton
+from prunus.model import Label, PointCloud, Skeleton
 from prunus.paper.trunks import find_trunks
 from prunus.result import Result
-from prunus.sensing.diagnosis import LINE_M, STEP_M, coarse_words, coarseness, is_lying, spread
+from prunus.sensing.diagnosis import (
+    LINE_M,
+    STEP_M,
+    coarse_words,
+    coarseness,
+    frame_by_evidence,
+    spread,
+)
 from prunus.sensing.linear import linear_at, linear_of
+from prunus.upright import SURER, sureness, sureness_in, sureness_of
 
 # The limits were set on simulated and drawn clouds alone, by `python -m bench.plausible`: 142 scans
 # of 40 trees, on 130 of which wood could be followed, 36 of them raw with nothing taken out; 22
@@ -36,19 +44,16 @@ there being no trunk in view."""
 LEAST_LINEAR, USUAL_LINEAR = 0.30, 0.40
 """On the 130 none had less than 0.38 (see `Evidence`); walls, balls and boxes had 0.07 to 0.28,
 what else is a surface up to 0.35."""
-LEAST_WOOD, LEAST_SURE = 0.10, 0.225
-"""What grew on votes is so likely a bare tree, and so sure in the mean. Of 192 scans of trees
-(`bench.trust_cases`) one was less likely, 0.03, the next 0.37; walls, boxes, noise and cones of
-needles are 0.0 to 0.1. As sure were 0.23 at least; noise, grass and most walls 0.05 to 0.19."""
-TINY_M = 1e-9
+LEAST_WOOD, LEAST_SURE = 0.10, 0.26
+"""What grew on votes is so likely a bare tree, and so sure in the mean. Wood: 0.42 at least on 20
+scans of any tree (`bench.set_cases`), 0.11 on whole rows taken for one tree; 0.0 to 0.09 on walls,
+balls, boxes and cones of needles. Sure: 0.38 at least, 0.31 where coordinates come in steps of 4
+cm; 0.14 to 0.23 on walls, noise, leaves and twigs of 10 cm."""
 USUAL_RISE = 0.45
 """Leaders rise so much a metre of their length: 0.51 at least on the 130, less than this on 11 of
 the 22 that lie."""
 USUAL_FORM, USUAL_WOOD = 0.75, 0.60
-"""What lies by all evidence in the cloud is refused where its form, or its wood, is less likely as
-well, or its leaders hardly rise. 12 scans were laid on either side, on front and back, and on their
-heads: the cloud told all of the 57 in which wood was followed, and these agreed on 53; on none of
-the 12 upright."""
+"""Where form or wood is less likely, or leaders hardly rise, it is looked whether it lies."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +66,7 @@ class Evidence:
     a metre of leader; step: in which the coordinates come, metres. Of a scorer that tells
     categories: trunk, whether one is in view. Of a tree that grew on votes in place of it: wood,
     how likely it is a bare tree; sure, the confidence of its edges in the mean over their length.
-    lies: whether another axis than Z is up by all evidence.
+    lies: whether another axis than Z is up, by all evidence and by how sure the tree is then.
     """
 
     length: float
@@ -92,8 +97,8 @@ class Evidence:
         rise, step = rise_of_leaders(skeleton), coarseness(result.scan)
         form = 1.0 if result.trust is None else result.trust.form
         odd = form < USUAL_FORM or wood < USUAL_WOOD or 0 < rise < USUAL_RISE
-        lies = odd and is_lying(result.scan)
-        return cls(length, across, explained, linear, rise, step, trunk, wood, sure, lies)
+        lying = odd and lies(result.scan)
+        return cls(length, across, explained, linear, rise, step, trunk, wood, sure, lying)
 
     def check(self) -> None:
         """Raise NoTreeError where it is no tree."""
@@ -139,11 +144,13 @@ class Evidence:
         return found
 
 
-def sureness(skeleton: Skeleton) -> float:
-    """The confidence of the edges of a skeleton in the mean over their length; 0: it has none."""
-    if len(skeleton) == 1:
-        return 0.0
-    return float(np.average(skeleton.confidence[1:], weights=skeleton.lengths[1:] + TINY_M))
+def lies(cloud: PointCloud) -> bool:
+    """Whether a tree is surer in another frame, for which all evidence in its cloud is."""
+    frame = frame_by_evidence(cloud)
+    if not frame:
+        return False
+    here, there = sureness_of(cloud), sureness_in(cloud.to_input.apply(cloud.xyz), frame)
+    return there > here + SURER
 
 
 def rise_of_leaders(skeleton: Skeleton) -> float:

@@ -55,6 +55,7 @@ class RigidMotion:
         """The motion back."""
         return RigidMotion(self.rotation.T, -self.rotation.T @ self.translation)
 
+
 CUBE_M, DENSEST, CHANCE = 0.02, 5.0, 12
 """Side of the cubes in which density is looked at; the densest that stays as it is, in medians, and
 in points, since the density of a sparse cloud varies by chance."""

@@ -97,10 +97,10 @@ def _large(cloud: PointCloud, xyz: Floats) -> str:
     return f"the cloud measures {_metres(size)}: is the unit right (--unit)? {TRY}"
 
 
-def is_lying(cloud: PointCloud) -> bool:
-    """Whether all evidence in a cloud is for another axis than Z as the one that is up."""
+def frame_by_evidence(cloud: PointCloud) -> str:
+    """The frame in which another axis than Z is up, by all evidence in a cloud; nothing if none."""
     up = seems(cloud.to_input.apply(_some(cloud)))
-    return not up.others and not _upward(cloud, up)
+    return "" if up.others or _upward(cloud, up) else up.frame
 
 
 def _lying(cloud: PointCloud, xyz: Floats) -> str:

@@ -21,11 +21,15 @@ VIEWER_M = 15.0
 
 @dataclass(frozen=True, eq=False)
 class Stance:
-    """A named frame, the further rotation (3, 3) to the house frame, and notes on how both came."""
+    """A named frame, the further rotation (3, 3) to the house frame, and notes on how both came.
+
+    `others`: frames that would do as well, by the evidence.
+    """
 
     frame: str
     turn: Floats
     notes: list[str]
+    others: tuple[str, ...] = ()
 
 
 def seems(xyz: Floats) -> Up:
@@ -36,18 +40,19 @@ def seems(xyz: Floats) -> Up:
     return find_frame(rest, local_wood(rest), ground)
 
 
-def find_stance(xyz: Floats, frame: str = "auto") -> Stance:
+def find_stance(xyz: Floats, frame: str = "auto", because: str = "") -> Stance:
     """How the points (P, 3) of a file stand in a named frame; auto: as the cloud shows.
 
-    Only `auto` levels: a name says which axis is up. The row is looked for where the frame does
-    not say where it runs.
+    because: why it is that frame, where nobody asked for it. Only `auto` levels: a name says which
+    axis is up. The row is looked for where the frame does not say where it runs.
     """
     cells = Cells.of(xyz)
     ground = find_ground(cells)
     rest = cells if ground is None else cells.take(~ground.cells)
     wood = local_wood(rest)
     up = find_frame(rest, wood, ground)
-    notes = [_told(up)] if frame == "auto" else _doubts(frame, up)
+    notes = [_told(up)] if frame == "auto" else [because] if because else _doubts(frame, up)
+    others = up.others if frame == "auto" else ()
     told, level = frame != "auto", np.eye(3)
     frame = frame if told else up.frame
     if not told and ground is not None:
@@ -55,14 +60,14 @@ def find_stance(xyz: Floats, frame: str = "auto") -> Stance:
         if tilt:
             notes.append(f"levelled by {tilt:.0f} degrees: so far the ground is tilted")
     if told and frame in ROW_TOLD:
-        return Stance(frame, level, notes)
+        return Stance(frame, level, notes, others)
     house = level @ FRAMES[frame]
     angle = row_turn(rest.turned(house), wood.turned(house))
     if angle:
         viewer = house @ -cells.middle
         angle = _facing(angle, viewer)
         notes.append(f"turned by {math.degrees(angle):.0f} degrees about Z, to the row")
-    return Stance(frame, turned(np.array([0.0, 0.0, angle])) @ level, notes)
+    return Stance(frame, turned(np.array([0.0, 0.0, angle])) @ level, notes, others)
 
 
 def _facing(angle: float, viewer: Floats) -> float:
