@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from prunus.field.votes import Threads
-from prunus.growth.graph import ThreadGraph, confidence_of
+from prunus.growth.graph import confidence_of
 from prunus.growth.grow import Orchard
 from prunus.model import (
     CandidateGraph,
@@ -27,7 +27,7 @@ REACH_M = 0.03
 def seeded_graph(
     cloud: PointCloud, of_voxel: Ints, voxels: Floats, orchard: Orchard, tree: Skeleton
 ) -> SeededGraph:
-    """The graph of the trees in view, and the tree that is meant: its edges, its base.
+    """The graph of the trees in view, and the tree that is meant: its edges, its base, its tips.
 
     cloud: the points of that tree; of_voxel (P,): the voxel that holds each; voxels (V, 3): where
     these are. Edges of the tree are as sure as they are in it.
@@ -44,7 +44,7 @@ def seeded_graph(
             CandidateGraph(_superpoints(cloud, of_voxel, voxels, graph.threads), edges), confidence,
             _categories(role), "field",
         ),
-        orchard.main, _tips(graph),
+        orchard.main, np.sort(tree.superpoint[_tips(tree)]),
     )  # fmt: skip
 
 
@@ -68,7 +68,6 @@ def _categories(role: Floats) -> Floats:
     return np.asarray(told / np.maximum(told.sum(axis=1, keepdims=True), 1e-9))
 
 
-def _tips(graph: ThreadGraph) -> Ints:
-    """The nodes from which no way goes on outward: those that hang on one other alone."""
-    count = np.bincount(graph.edges[~graph.gap].ravel(), minlength=len(graph.threads))
-    return np.flatnonzero(count == 1)
+def _tips(tree: Skeleton) -> Ints:
+    """The rows of a tree from which nothing grows on."""
+    return np.setdiff1d(np.arange(1, len(tree)), tree.parent)
