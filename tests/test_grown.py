@@ -80,6 +80,7 @@ def test_a_base_below_wood_that_weeds_hide_is_taken_with_a_note(cloud: Floats) -
     assert count(result.skeleton)[2] == 4
 
 
+@pytest.mark.slow
 def test_noise_is_no_tree() -> None:
     noise = np.random.default_rng(1).uniform(0, 1.5, (20_000, 3))
     with pytest.raises(NoTreeError):

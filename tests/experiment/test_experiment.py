@@ -58,6 +58,7 @@ def test_the_page_holds_tables_and_figures_and_needs_no_network(folder: Path) ->
     assert "edit ratio, median" in (folder / "results.md").read_text()
 
 
+@pytest.mark.slow
 def test_what_is_done_is_not_done_again(folder: Path) -> None:
     path = next((folder / "trees").iterdir())
     held = json.loads(path.read_text())

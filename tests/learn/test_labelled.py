@@ -167,6 +167,7 @@ def test_only_a_network_of_its_kind_can_be_gone_on_from(tmp_path: Path) -> None:
         start_from(tmp_path / "net.onnx", PaperNet())
 
 
+@pytest.mark.slow
 def test_labels_alone_and_with_simulated_trees_give_weights(
     studio: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

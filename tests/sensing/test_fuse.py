@@ -126,6 +126,7 @@ def test_poses_of_a_simulated_scan_are_refined() -> None:
     assert len(np.unique(cells, axis=0)) > 0.99 * len(cells)
 
 
+@pytest.mark.slow
 def test_a_view_that_does_not_fit_is_left_out_and_the_others_are_as_without_it() -> None:
     fused = fuse(rig({1: np.array([0.25, 0.0, 0.1])}, views=3))
     assert [bool(view.refused) for view in fused.views] == [False, True, False]

@@ -27,6 +27,7 @@ from tests.children import prunus
 from tests.studio.conftest import Remote, Visit, new_page, soon, until
 
 Opened = Callable[..., Visit]
+pytestmark = pytest.mark.slow  # each opens a browser
 
 
 def free_superpoint(visit: Visit) -> int:

@@ -33,14 +33,35 @@ LEAST_M = 0.05
 """Shorter branches stay where they are."""
 
 
+class Straight:
+    """Straight ways between rows xyz (M, 3) of a tree; whether each leaves wood is remembered."""
+
+    def __init__(self, threads: Threads, xyz: Floats) -> None:
+        self.threads, self.xyz = threads, xyz
+        self._known = np.zeros(0, np.int64)
+        self._leaves = np.zeros(0, np.bool_)
+
+    def leave_wood(self, row: Ints, host: Ints) -> Bools:
+        """Whether the ways (B,) from hosts to rows go through the open."""
+        way = row * len(self.xyz) + host
+        new = np.setdiff1d(way, self._known)
+        start, end = (self.xyz[rows] for rows in (new % len(self.xyz), new // len(self.xyz)))
+        known = np.append(self._known, new)
+        order = np.argsort(known)
+        self._leaves = np.append(self._leaves, _leaves_wood(self.threads, start, end))[order]
+        self._known = known[order]
+        return np.asarray(self._leaves[np.searchsorted(self._known, way)])
+
+
 def choose_parents(threads: Threads, grown: Grown) -> tuple[Grown, Labelled]:
     """The tree with better parents, and its labels."""
     roles = threads.role[grown.nodes]
     parent = grown.parent.copy()
+    ways = Straight(threads, threads.xyz[grown.nodes])
     for left in reversed(range(ROUNDS + 1)):
         tree = Tree(threads.xyz[grown.nodes], parent)
         told = label_tree(tree, roles)
-        better = _better_parents(threads, grown.nodes, tree, told) if left else parent
+        better = _better_parents(ways, grown.nodes, tree, told) if left else parent
         if (better == parent).all():
             break
         parent = better
@@ -65,7 +86,7 @@ def _in_order(nodes: Ints, tree: Tree, told: Labelled) -> tuple[Grown, Labelled]
     return Grown(nodes=nodes[order], parent=parent), labelled
 
 
-def _better_parents(threads: Threads, nodes: Ints, tree: Tree, told: Labelled) -> Ints:
+def _better_parents(ways: Straight, nodes: Ints, tree: Tree, told: Labelled) -> Ints:
     """The parents (M,) with branches hung elsewhere; of those that are in each other's way one."""
     forks = np.flatnonzero([
         above > 0 and len(tree.children[above]) > 1 for above in tree.parent.tolist()
@@ -77,8 +98,8 @@ def _better_parents(threads: Threads, nodes: Ints, tree: Tree, told: Labelled) -
     row, host = _places(tree, forks)
     kept = (host != row) & (host != 0)
     row, host = row[kept], host[kept]
-    value = _value(threads, nodes, tree, told, row, host)
-    now = _value(threads, nodes, tree, told, forks, tree.parent[forks])
+    value = _value(ways, nodes, tree, told, row, host)
+    now = _value(ways, nodes, tree, told, forks, tree.parent[forks])
     own = np.zeros(len(parent))
     own[forks] = now
     gain = value - own[row]
@@ -112,14 +133,14 @@ def _free(parent: Ints, moved: Bools, row: int, host: int) -> bool:
 
 
 def _value(
-    threads: Threads, nodes: Ints, tree: Tree, told: Labelled, row: Ints, host: Ints
+    ways: Straight, nodes: Ints, tree: Tree, told: Labelled, row: Ints, host: Ints
 ) -> Floats:
     """What it is worth (B,) if branches hang by their first row on hosts, whose labels stay."""
     label = told.label[host]
     fork = np.where(_goes_on(tree, told, row, host), FORK[label], 0.0)
     as_same = told.best[row, label] - TURN * tree.turn_from(host, row) - fork
     outward = np.column_stack([nodes[host], nodes[row]])
-    cost = growth_costs(threads, outward, _leaves_wood(threads, tree.xyz[host], tree.xyz[row]))
+    cost = growth_costs(ways.threads, outward, ways.leave_wood(row, host))
     return np.asarray(np.maximum(told.other[row, label], as_same) - COST * cost)
 
 

@@ -183,6 +183,7 @@ def straw(rng: np.random.Generator) -> Floats:
     return np.asarray((middle + way * rng.uniform(-0.15, 0.15, (900, 30, 1))).reshape(-1, 3))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [needles, barrel, straw])
 def test_what_is_no_tree_is_refused_or_said(kind: Callable[[np.random.Generator], Floats]) -> None:
     try:
