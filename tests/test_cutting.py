@@ -54,6 +54,7 @@ def test_a_cloud_gives_a_plan_in_its_own_frame(plan: PlanFile, folder: Path) -> 
         assert cut.approach.direction[2] > 0, "away from the camera, which looks along z"
 
 
+@pytest.mark.slow
 def test_a_cloud_is_skeletonized_as_it_was_asked_for(plan: PlanFile, folder: Path) -> None:
     path, base = folder / "tree.ply", (0.0, 0.0, 0.0)
     fewer, paper = (
@@ -173,6 +174,7 @@ def into_bag(source: Path, plan: PlanFile, home: Path) -> str:
 
 @pytest.mark.parametrize("planned_on", ["tree.ply", "out/skeleton.json", "out/refined.json"])
 @pytest.mark.parametrize("shown_with", ["out/skeleton.json", "out/refined.json"])
+@pytest.mark.slow
 def test_a_plan_belongs_to_its_skeleton_rough_and_refined(
     planned_on: str, shown_with: str, folder: Path, tmp_path: Path
 ) -> None:

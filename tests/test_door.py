@@ -135,6 +135,7 @@ def test_what_is_no_scorer_is_refused(scorer: Any, says: str) -> None:
 
 
 @pytest.mark.parametrize("kind", [np.float16, np.float32, np.float64, list])
+@pytest.mark.slow
 def test_a_scorer_may_give_any_kind_of_number(kind: Any) -> None:
     def gives(edges: int) -> Any:
         return [0.5] * edges if kind is list else half(edges).astype(kind)

@@ -95,6 +95,7 @@ def test_trees_of_the_simulator_are_mostly_found() -> None:
     assert (distance[thick] < 0.05).mean() > 0.8
 
 
+@pytest.mark.slow
 def test_each_parameter_that_is_shown_changes_some_result() -> None:
     """Of a row of two trees, one scanned much denser: points drawn, and what is the tree."""
     some = surface_of(TEXTBOOK, np.random.default_rng(0))

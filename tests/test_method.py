@@ -79,6 +79,7 @@ def test_only_edges_are_scored() -> None:
 
 
 @pytest.mark.parametrize("way", [*WAYS, *ABLATIONS], ids=lambda way: way.name)
+@pytest.mark.slow
 def test_every_row_of_the_experiment_is_its_method_or_another(way: Way) -> None:
     same = way.method(tree()) == Method.of(way.params)
     assert same == (way.name in ("paper", "default", "default, base found"))

@@ -73,6 +73,7 @@ NO_TREES: dict[str, tuple[Callable[[], Floats], str]] = {
 
 
 @pytest.mark.parametrize("kind", NO_TREES)
+@pytest.mark.slow
 def test_what_is_no_tree_is_refused_with_the_reason(kind: str) -> None:
     points, reason = NO_TREES[kind]
     with pytest.raises(NoTreeError, match=reason):
@@ -153,6 +154,7 @@ LYING = [name for name, turn in FRAMES.items() if turn[2, 2] < 0.5]
 
 
 @pytest.mark.parametrize("frame", LYING)
+@pytest.mark.slow
 def test_a_tree_in_another_frame_than_was_said_is_refused_and_its_own_is_named(frame: str) -> None:
     with pytest.raises(NoTreeError) as told:
         skeletonize(tree_points() @ FRAMES[frame])

@@ -21,6 +21,7 @@ def points() -> Floats:
 
 
 @pytest.mark.parametrize("frame", UP)
+@pytest.mark.slow
 def test_a_tree_is_surest_in_the_frame_it_stands_in(points: Floats, frame: str) -> None:
     others = [name for name in UP if name != frame]
     assert surest_frame(points @ FRAMES[frame], [*others, frame]) == frame

@@ -94,6 +94,7 @@ if __name__ == "__main__":
         (sit_deaf, signal.SIGKILL),
     ],
 )
+@pytest.mark.slow
 def test_no_worker_outlives_its_parent(
     work: Callable[[Path], None], number: signal.Signals, tmp_path: Path
 ) -> None:

@@ -267,6 +267,7 @@ WORKER = """
 
 
 @pytest.mark.parametrize("after", [1, 7, 20])
+@pytest.mark.slow
 def test_a_killed_server_loses_at_most_the_last_act(
     scan_file: Path, folder: Path, after: int
 ) -> None:

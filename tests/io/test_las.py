@@ -246,6 +246,7 @@ def test_a_record_of_no_points_is_refused(tmp_path: Path, at: int, size: int) ->
 
 
 @pytest.mark.parametrize("form", [0, 3, 6, 7, 8, 10])
+@pytest.mark.slow
 def test_many_chunks_and_further_bytes_are_read(tmp_path: Path, form: int) -> None:
     header = laspy.LasHeader(point_format=form, version="1.4")
     header.add_extra_dim(laspy.ExtraBytesParams("reflectance", "u2"))

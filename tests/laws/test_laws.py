@@ -45,6 +45,7 @@ def same_decisions(first: Skeleton, second: Skeleton) -> bool:
 
 @every_method
 @every_tree
+@pytest.mark.slow
 def test_every_result_is_a_tree_rooted_at_the_base(seed: int, method: str) -> None:
     found = result(seed, method)
     assert found.skeleton.superpoint[0] == found.graph.base
@@ -108,6 +109,7 @@ def test_another_seed_draws_other_points(method: str) -> None:
 @every_method
 @every_tree
 @pytest.mark.parametrize("shift", [(3.0, -7.25, 100.5), (612_345.0, 5_123_456.0, 321.0)])
+@pytest.mark.slow
 def test_moving_the_cloud_moves_the_skeleton(
     seed: int, shift: tuple[float, ...], method: str
 ) -> None:
@@ -120,6 +122,7 @@ def test_moving_the_cloud_moves_the_skeleton(
 
 
 @every_tree
+@pytest.mark.slow
 def test_turning_the_cloud_half_round_turns_the_skeleton(seed: int) -> None:
     points, base = points_of(seed)
     half = np.array([-1.0, -1.0, 1.0])
@@ -131,6 +134,7 @@ def test_turning_the_cloud_half_round_turns_the_skeleton(seed: int) -> None:
 
 @every_tree
 @pytest.mark.parametrize("turn", [(-1.0, -1.0, 1.0), (-1.0, 1.0, 1.0)], ids=["half", "mirror"])
+@pytest.mark.slow
 def test_a_tree_seen_from_behind_or_in_a_mirror_is_the_same_tree(
     seed: int, turn: tuple[float, ...]
 ) -> None:
@@ -151,6 +155,7 @@ def test_a_tree_seen_from_behind_or_in_a_mirror_is_the_same_tree(
 
 @every_method
 @every_tree
+@pytest.mark.slow
 def test_a_named_frame_changes_nothing_but_coordinates(seed: int, method: str) -> None:
     points, base = points_of(seed)
     to_optical = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])

@@ -190,6 +190,7 @@ def test_the_answer_is_legal_and_scores_the_sum_of_its_rewards(seed: int) -> Non
 
 
 @pytest.mark.parametrize("seed", range(12))
+@pytest.mark.slow
 def test_nothing_beats_the_exhaustive_optimum_and_little_is_lost(seed: int) -> None:
     seeded = random_graph(seed, nodes=7, edges=9, tips=6)
     _, optimum = orchard(seeded, PARAMS).best()

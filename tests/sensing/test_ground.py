@@ -23,6 +23,7 @@ def drawn(habit: str, seed: int = 0) -> Floats:
 
 
 @pytest.mark.parametrize("seed", range(600_000, 600_006))
+@pytest.mark.slow
 def test_a_hand_cleaned_tree_has_no_ground(seed: int) -> None:
     assert find_ground(Cells.of(field_scan(seed).target_cloud().xyz)) is None
 

@@ -19,6 +19,7 @@ def up_of(xyz: Floats) -> Up:
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("frame", SIX)
+@pytest.mark.slow
 def test_a_hand_cleaned_tree_says_which_axis_is_up(seed: int, frame: str) -> None:
     xyz = field_scan(seed).target_cloud().xyz @ FRAMES[frame]
     up = up_of(xyz)

@@ -36,6 +36,7 @@ def tilt(left: Floats) -> float:
 @pytest.mark.parametrize("turn", axis_rotations())
 @pytest.mark.parametrize("share", [0.0, 0.5, 0.9])
 @pytest.mark.parametrize("name", CLOUDS)
+@pytest.mark.slow
 def test_turning_the_axes_changes_nothing_or_is_warned_of(
     name: str, share: float, turn: Floats
 ) -> None:
@@ -52,12 +53,14 @@ def test_turning_the_axes_changes_nothing_or_is_warned_of(
 
 
 @pytest.mark.parametrize("seed", range(600_000, 600_006))
+@pytest.mark.slow
 def test_a_hand_cleaned_tree_stays_as_it_is(seed: int) -> None:
     stance = find_stance(field_scan(seed).target_cloud().xyz)
     assert np.array_equal(stance.turn @ FRAMES[stance.frame], np.eye(3))
 
 
 @pytest.mark.parametrize("seed", range(500_000, 500_004))
+@pytest.mark.slow
 def test_a_level_row_stays_as_it_is(seed: int) -> None:
     stance = find_stance(field_scan(seed).xyz)
     assert np.array_equal(stance.turn @ FRAMES[stance.frame], np.eye(3))

@@ -86,6 +86,7 @@ def weights_in(folder: Path) -> dict[str, Any]:
     return dict(read_checkpoint(folder / "checkpoint.pt")["net"])
 
 
+@pytest.mark.slow
 def test_an_interrupted_training_ends_as_one_that_was_not(folder: Path, tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         field_school(course(tmp_path), interrupted_after(3), str)

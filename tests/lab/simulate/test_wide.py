@@ -79,6 +79,7 @@ def test_a_textbook_tree_is_straight():
 
 
 @pytest.mark.parametrize("name", [name for name in wide_orchard().scanner if name != "rig"])
+@pytest.mark.slow
 def test_each_scanner_sees_wood_where_it_is(name):
     rng = np.random.default_rng(3)
     orchard = wide_orchard()
