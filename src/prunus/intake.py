@@ -58,7 +58,7 @@ def read_cloud(path: str | Path, frame: str = "auto", unit: str | None = None) -
 def _stance(xyz: Floats, frame: str) -> Stance:
     """How points (P, 3) of a file stand; where that is not plain, as a tree is surest."""
     stance = find_stance(xyz, frame)
-    if frame != "auto":
+    if frame != "auto" or (stance.grounded and not stance.others):
         return stance
     up = FRAMES[stance.frame][2]
     others = dict.fromkeys(

@@ -23,6 +23,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_every_way_is_tried_and_written(folder: Path) -> None:
     held = json.loads((folder / "results.json").read_text())
     names = [way.name for way in WAYS]

@@ -23,13 +23,14 @@ VIEWER_M = 15.0
 class Stance:
     """A named frame, the further rotation (3, 3) to the house frame, and notes on how both came.
 
-    `others`: frames that would do as well, by the evidence.
+    `others`: frames that would do as well, by the evidence; `grounded`: whether ground tells it.
     """
 
     frame: str
     turn: Floats
     notes: list[str]
     others: tuple[str, ...] = ()
+    grounded: bool = False
 
 
 def seems(xyz: Floats) -> Up:
@@ -53,6 +54,7 @@ def find_stance(xyz: Floats, frame: str = "auto", because: str = "") -> Stance:
     up = find_frame(rest, wood, ground)
     notes = [_told(up)] if frame == "auto" else [because] if because else _doubts(frame, up)
     others = up.others if frame == "auto" else ()
+    grounded = ground is not None
     told, level = frame != "auto", np.eye(3)
     frame = frame if told else up.frame
     if not told and ground is not None:
@@ -60,14 +62,14 @@ def find_stance(xyz: Floats, frame: str = "auto", because: str = "") -> Stance:
         if tilt:
             notes.append(f"levelled by {tilt:.0f} degrees: so far the ground is tilted")
     if told and frame in ROW_TOLD:
-        return Stance(frame, level, notes, others)
+        return Stance(frame, level, notes, others, grounded)
     house = level @ FRAMES[frame]
     angle = row_turn(rest.turned(house), wood.turned(house))
     if angle:
         viewer = house @ -cells.middle
         angle = _facing(angle, viewer)
         notes.append(f"turned by {math.degrees(angle):.0f} degrees about Z, to the row")
-    return Stance(frame, turned(np.array([0.0, 0.0, angle])) @ level, notes, others)
+    return Stance(frame, turned(np.array([0.0, 0.0, angle])) @ level, notes, others, grounded)
 
 
 def _facing(angle: float, viewer: Floats) -> float:
