@@ -15,9 +15,9 @@ from prunus.plausible import Evidence
 from tests.conftest import field_scan, simulated
 
 
-def tree_points() -> Floats:
+def tree_points(seed: int = 4) -> Floats:
     """The points of a simulated tree, 2.3 m high."""
-    cloud = simulated(4)[1]
+    cloud = simulated(seed)[1]
     return np.asarray(cloud.to_input.apply(cloud.xyz))
 
 
