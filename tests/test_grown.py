@@ -53,6 +53,15 @@ def test_of_two_trees_that_at_the_base_is_taken_and_the_other_left_out(cloud: Fl
         assert np.abs(result.skeleton.xyz[:, 0] - base).max() < 1.0
 
 
+def test_points_that_were_not_drawn_go_with_the_wood_beside_them(cloud: Floats) -> None:
+    row = np.concatenate([cloud, cloud + np.array([2.2, 0, 0])])
+    params = Parameters.parse({"input": {"points": 6000}}, "test")
+    result = skeletonize(row, [0, 0, 0], params)
+    assert result.isolated is not None
+    assert result.isolated.target[: len(cloud)].mean() > 0.99
+    assert result.isolated.target[len(cloud) :].mean() < 0.01
+
+
 def test_another_tree_could_be_meant_where_no_base_says_which(cloud: Floats) -> None:
     row = np.concatenate([cloud, cloud + np.array([2.2, 0, 0])])
     open_question, told = skeletonize(row), skeletonize(row, [0, 0, 0])

@@ -10,10 +10,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from prunus.errors import NoTreeError, PrunusError
 from prunus.field.network import see_field
-from prunus.field.votes import PointField, Threads, gather_votes
+from prunus.field.votes import LEAST_WOOD, PointField, Threads, gather_votes
 from prunus.field.voxels import Voxels, voxels_of
 from prunus.field.wires import without_wires
 from prunus.growth.branches import Grown as Branches
@@ -25,7 +26,7 @@ from prunus.growth.parents import choose_parents
 from prunus.growth.told import told_of
 from prunus.growth.ways import Ways
 from prunus.measure import remarks
-from prunus.model import Floats, Ints, Kind, PointCloud, SeededGraph, Skeleton, parents_first
+from prunus.model import Floats, Ints, Kind, PointCloud, Role, SeededGraph, Skeleton, parents_first
 from prunus.params import Parameters
 from prunus.result import Found, Seconds, timed
 from prunus.sensing.isolated import Isolated
@@ -38,6 +39,8 @@ BEHIND_M = 0.25
 """A tree that stands so much farther away is one behind."""
 GROUND_M = 0.05
 """What is no wood and lies so little above the foot is ground."""
+BESIDE_M = 0.05
+"""A point that was not drawn, and wood too sparse to vote, go with what is so near at most."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -74,8 +77,7 @@ class View:
 
     def _kinds(self, base: int) -> Ints:
         """What each point (P,) is to the tree that grows from a node (`Kind`)."""
-        row = self.voxels.holding(self.cloud.xyz)
-        foot = np.where(row >= 0, self.orchard.foot_of_voxel()[row], -1)
+        foot = self._foot_of_points()
         place = self.orchard.graph.threads.xyz
         behind = place[foot, 1] > place[base, 1] + BEHIND_M
         kind = np.where(behind, int(Kind.BEHIND), int(Kind.NEIGHBOUR))
@@ -83,6 +85,20 @@ class View:
         low = self.cloud.xyz[:, 2] < place[base, 2] + GROUND_M
         kind[foot < 0] = np.where(low, int(Kind.GROUND), int(Kind.STRAY))[foot < 0]
         return kind
+
+    def _foot_of_points(self) -> Ints:
+        """The foot (P,) of the tree that each point of the cloud is wood of; -1 = of none."""
+        foot = self.orchard.foot_of_voxel()
+        wood = self.field.role[:, Role.NO_WOOD] < 1 - LEAST_WOOD
+        lone = np.flatnonzero(wood & (foot < 0))
+        foot[lone] = _of_the_nearest(
+            self.voxels.xyz[lone], self.voxels.xyz[foot >= 0], foot[foot >= 0]
+        )
+        row = self.voxels.holding(self.cloud.xyz)
+        of_point = foot[row]
+        between = np.flatnonzero(row < 0)
+        of_point[between] = _of_the_nearest(self.cloud.xyz[between], self.voxels.xyz, foot)
+        return of_point
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -188,6 +204,14 @@ def asked_for(isolated: Isolated, params: Parameters) -> Isolated | None:
     raw = isolated.removed >= params.isolation.raw_from
     wanted = {"auto": raw, "always": True, "never": False}[params.isolation.isolate]
     return isolated if wanted else None
+
+
+def _of_the_nearest(xyz: Floats, others: Floats, foot: Ints) -> Ints:
+    """The foot (P,) of the nearest of others (V, 3) that lies beside each of some points (P, 3)."""
+    if len(others) == 0:
+        return np.full(len(xyz), -1)
+    away, row = cKDTree(others).query(xyz, distance_upper_bound=BESIDE_M)
+    return np.where(np.isfinite(away), foot[np.minimum(row, len(foot) - 1)], -1)
 
 
 def _by_nodes(tree: Skeleton) -> Skeleton:
