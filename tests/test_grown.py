@@ -9,6 +9,7 @@ from prunus.measure import branches
 from prunus.model import Floats, Kind, Label, Skeleton
 from prunus.params import GROUPS, Parameters
 from prunus.rules import offenders
+from prunus.simulate import simulate_scan
 from tests.conftest import simulated
 from tests.growth.drawn import TEXTBOOK, surface_of
 
@@ -69,12 +70,15 @@ def test_another_tree_could_be_meant_where_no_base_says_which(cloud: Floats) -> 
     assert not any("may be meant" in line for line in told.review)
 
 
-def test_what_was_isolated_is_the_tree_of_one_step(cloud: Floats) -> None:
-    row = np.concatenate([cloud, cloud + np.array([2.2, 0, 0])])
-    one = skeletonize(row, [0, 0, 0])
-    two = skeletonize(row[one.isolated.target])
-    assert count(one.skeleton)[:3] == count(two.skeleton)[:3]
-    assert abs(one.skeleton.lengths.sum() - two.skeleton.lengths.sum()) < 0.3
+@pytest.mark.parametrize("seed", [3, 4])
+def test_what_was_isolated_is_the_tree_of_one_step(seed: int) -> None:
+    scan = simulate_scan(seed)
+    one = skeletonize(scan.xyz)
+    assert one.isolated is not None
+    two = skeletonize(scan.xyz[one.isolated.target])
+    assert two.isolated is None
+    assert np.array_equal(one.skeleton.label, two.skeleton.label)
+    assert np.allclose(one.skeleton.xyz, two.skeleton.xyz, atol=1e-3)
 
 
 def test_a_base_far_from_any_wood_is_refused(cloud: Floats) -> None:

@@ -7,7 +7,8 @@ trees in view.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from copy import deepcopy
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -23,10 +24,20 @@ from prunus.growth.evidence import seeded_graph
 from prunus.growth.graph import ThreadGraph, join_threads
 from prunus.growth.grow import Choose, Cut, Orchard
 from prunus.growth.parents import choose_parents
-from prunus.growth.told import told_of
+from prunus.growth.told import SURE, lead_of, told_of
 from prunus.growth.ways import Ways
 from prunus.measure import remarks
-from prunus.model import Floats, Ints, Kind, PointCloud, Role, SeededGraph, Skeleton, parents_first
+from prunus.model import (
+    Floats,
+    Ints,
+    Kind,
+    PointCloud,
+    Role,
+    SeededGraph,
+    Skeleton,
+    Told,
+    parents_first,
+)
 from prunus.params import Parameters
 from prunus.result import Found, Seconds, timed
 from prunus.sensing.isolated import Isolated
@@ -47,7 +58,9 @@ BESIDE_M = 0.05
 class View:
     """A cloud, the points of it that were drawn, the field over their voxels, and all trees.
 
-    `given`: whether a base was; `notes`: what is to be said of it.
+    `at` (3,): a base that was given; `notes`: what is to be said of it. Where the cloud is what was
+    isolated of a scan, `raw` is the view of that scan, and `isolated` what its points are; `lead`:
+    the least by which its tree led over others in view so far (`growth.told.lead_of`).
     """
 
     cloud: PointCloud
@@ -55,49 +68,69 @@ class View:
     voxels: Voxels
     field: PointField
     orchard: Orchard
-    given: bool
+    at: Floats | None
     notes: list[str]
-
-    def isolated(self, tree: Skeleton) -> Isolated:
-        """What each point of the cloud is to a tree."""
-        return Isolated(self._kinds(int(tree.superpoint[0])), tree.xyz[0])
+    raw: View | None = None
+    isolated: Isolated | None = None
+    lead: float = SURE
 
     def tree(self, cut: Cut = cut_branches, choose: Choose = choose_parents) -> Skeleton:
         """The tree that is meant."""
         return _by_nodes(self.orchard.tree_at(self.orchard.main, cut, choose))
 
-    def graph(self, tree: Skeleton, alone: bool) -> SeededGraph:
-        """The graph of the threads and of that tree, with its points `alone`, or all."""
+    def graph(self, tree: Skeleton) -> SeededGraph:
+        """The graph of the threads and of that tree, with its points if others were left out."""
         mine = np.ones(len(self.drawn), np.bool_)
-        if alone:
+        if self.isolated is not None:
             of_voxel = self.orchard.foot_of_voxel()
             mine = of_voxel[self.voxels.of_point] == self.orchard.main
         points, of_voxel = self.drawn.take(mine), self.voxels.of_point[mine]
         return seeded_graph(points, of_voxel, self.voxels.xyz, self.orchard, tree)
 
-    def _kinds(self, base: int) -> Ints:
-        """What each point (P,) is to the tree that grows from a node (`Kind`)."""
+    def told(self, tree: Skeleton) -> Told:
+        """What the field tells of a tree; what stood around it is told by the raw scan."""
+        lead = SURE if self.at is not None else self.leads()
+        return told_of(tree, self.orchard, self.field, (self.raw or self).field, lead)
+
+    def leads(self) -> float:
+        """By how much the tree that is meant leads over others, at the least so far."""
+        return min(self.lead, lead_of(self.orchard))
+
+    def meant_at(self, place: Floats) -> View:
+        """The same view; the tree is meant whose foot is the nearest to a place (3,)."""
+        feet = self.orchard.feet
+        away = np.linalg.norm(self.orchard.graph.threads.xyz[feet] - place, axis=1)
+        return replace(self, orchard=replace(self.orchard, main=int(feet[away.argmin()])))
+
+    def each(self) -> list[View]:
+        """The view with each tree in turn as the one that is meant, that which is so first."""
+        main = self.orchard.main
+        feet = sorted(self.orchard.feet.tolist(), key=lambda foot: foot != main)
+        return [replace(self, orchard=replace(self.orchard, main=foot)) for foot in feet]
+
+    def points_of_tree(self) -> Isolated:
+        """What each point of the cloud is to the tree that is meant."""
+        threads, main = self.orchard.graph.threads, self.orchard.main
         foot = self._foot_of_points()
-        place = self.orchard.graph.threads.xyz
-        behind = place[foot, 1] > place[base, 1] + BEHIND_M
+        place = threads.xyz
+        behind = place[foot, 1] > place[main, 1] + BEHIND_M
         kind = np.where(behind, int(Kind.BEHIND), int(Kind.NEIGHBOUR))
-        kind[foot == base] = Kind.TARGET
-        low = self.cloud.xyz[:, 2] < place[base, 2] + GROUND_M
+        kind[foot == main] = Kind.TARGET
+        low = self.cloud.xyz[:, 2] < place[main, 2] + GROUND_M
         kind[foot < 0] = np.where(low, int(Kind.GROUND), int(Kind.STRAY))[foot < 0]
-        return kind
+        return Isolated(kind, self.orchard.place_of(main))
 
     def _foot_of_points(self) -> Ints:
         """The foot (P,) of the tree that each point of the cloud is wood of; -1 = of none."""
         foot = self.orchard.foot_of_voxel()
         wood = self.field.role[:, Role.NO_WOOD] < 1 - LEAST_WOOD
-        lone = np.flatnonzero(wood & (foot < 0))
-        foot[lone] = _of_the_nearest(
-            self.voxels.xyz[lone], self.voxels.xyz[foot >= 0], foot[foot >= 0]
-        )
+        lone, owned = np.flatnonzero(wood & (foot < 0)), np.flatnonzero(foot >= 0)
+        voxel = self.voxels.xyz
+        foot[lone] = _of_the_nearest(voxel[lone], voxel[owned], foot[owned])
         row = self.voxels.holding(self.cloud.xyz)
         of_point = foot[row]
         between = np.flatnonzero(row < 0)
-        of_point[between] = _of_the_nearest(self.cloud.xyz[between], self.voxels.xyz, foot)
+        of_point[between] = _of_the_nearest(self.cloud.xyz[between], voxel, foot)
         return of_point
 
 
@@ -122,10 +155,22 @@ class Votes:
         rng: np.random.Generator,
         seconds: Seconds,
     ) -> View:
-        """The trees of a cloud; meant is that at a base (3,), or at which the scanner looks.
+        """The tree of a cloud that stands at a base (3,), or at which the scanner looks.
 
         NoTreeError where nothing is wood; PrunusError where the base is far from any.
         """
+        return self.alone(self.look(cloud, at, params, rng, seconds), params, rng, seconds)
+
+    def look(
+        self,
+        cloud: PointCloud,
+        at: Floats | None,
+        params: Parameters,
+        rng: np.random.Generator,
+        seconds: Seconds,
+    ) -> View:
+        """A cloud with all that is in it; errors as for a call."""
+        rng = deepcopy(rng)  # so that a tree is seen alike in its own file
         with timed(seconds, "field"):
             drawn = cloud.sample_evenly(params.input.count, rng)
             voxels = voxels_of(drawn.xyz)
@@ -139,9 +184,28 @@ class Votes:
             graph = self.join(threads, params.growth.gap_max)
             orchard = Orchard.of(graph, base, alone=params.isolation.isolate == "never")
         return View(
-            cloud=cloud, drawn=drawn, voxels=voxels, field=field, orchard=orchard,
-            given=at is not None, notes=notes,
+            cloud=cloud, drawn=drawn, voxels=voxels, field=field, orchard=orchard, at=at,
+            notes=notes,
         )  # fmt: skip
+
+    def alone(
+        self, raw: View, params: Parameters, rng: np.random.Generator, seconds: Seconds
+    ) -> View:
+        """The tree that is meant without what is none of it, seen anew until nothing more is.
+
+        So what is isolated, written and read again is the same tree.
+        """
+        view, kind = raw, np.full(len(raw.cloud), int(Kind.TARGET))
+        while True:
+            with timed(seconds, "isolate"):
+                isolated = asked_for(view.points_of_tree(), params, again=view is not raw)
+            if isolated is None:
+                return view
+            kind[kind == Kind.TARGET] = isolated.kind
+            isolated = Isolated(kind.copy(), isolated.foot)
+            own = raw.cloud.take(isolated.target)
+            nearer = self.look(own, raw.at, params, rng, seconds).meant_at(isolated.foot)
+            view = replace(nearer, raw=raw, isolated=isolated, lead=view.leads())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,14 +223,12 @@ class Growth:
         self, view: View, params: Parameters, rng: np.random.Generator, seconds: Seconds
     ) -> Found:
         """The tree that is meant, what the field told of it, and what of the cloud is not it."""
+        isolated = view.isolated
         with timed(seconds, "growth"):
             skeleton = view.tree(self._cut_by(params), self.choose)
-            told = told_of(skeleton, view.orchard, view.field, given=view.given)
-        with timed(seconds, "isolate"):
-            isolated = asked_for(view.isolated(skeleton), params)
-            graph = view.graph(skeleton, alone=isolated is not None)
+            told, graph = view.told(skeleton), view.graph(skeleton)
         notes = view.notes if isolated is None else [*view.notes, isolated.told()]
-        if not view.given:
+        if view.at is None:
             place = view.cloud.words_for(skeleton.xyz[0])
             notes = [*notes, f"no base was given: the foot of the trunk was found at {place}"]
         with timed(seconds, "measures"):
@@ -194,15 +256,13 @@ def isolated_tree(
     """
     if params.isolation.isolate == "never":
         return None
-    view = Votes()(cloud, at, params, rng, seconds)
-    with timed(seconds, "isolate"):
-        return asked_for(view.isolated(view.tree()), params)
+    return Votes()(cloud, at, params, rng, seconds).isolated
 
 
-def asked_for(isolated: Isolated, params: Parameters) -> Isolated | None:
-    """What was isolated, where the scan is raw enough for what is asked."""
+def asked_for(isolated: Isolated, params: Parameters, again: bool = False) -> Isolated | None:
+    """What was isolated, where the scan is raw enough for what is asked; `again`: once more."""
     raw = isolated.removed >= params.isolation.raw_from
-    wanted = {"auto": raw, "always": True, "never": False}[params.isolation.isolate]
+    wanted = {"auto": raw, "always": raw or not again, "never": False}[params.isolation.isolate]
     return isolated if wanted else None
 
 

@@ -27,6 +27,7 @@ class Opened:
 
     scan: Scan
     view: View
+    rng: np.random.Generator
 
     @classmethod
     def of(
@@ -46,7 +47,7 @@ class Opened:
         with naming(path), explaining(scan.cloud):
             base = None if at is None else scan.cloud.to_input.inverse().apply(at)
             rng = np.random.default_rng(seed)
-            return cls(scan, Votes()(scan.cloud, base, Parameters(), rng, {}))
+            return cls(scan, Votes().look(scan.cloud, base, Parameters(), rng, {}), rng)
 
     def place(self, point: Floats) -> Floats:
         """A point of the house frame (3,) in the frame of the file."""
@@ -55,26 +56,25 @@ class Opened:
     def tree(self) -> Isolated:
         """The tree that is meant; NoTreeError: it is none."""
         with naming(self.scan.file.path), explaining(self.scan.cloud):
-            tree = self.view.tree()
-            isolated = self.view.isolated(tree)
-            if not is_tree(tree, self.scan.cloud.xyz[isolated.target]):
+            isolated = self._alone(self.view)
+            if isolated is None:
                 raise NoTreeError("no tree was found: hardly any branches, or a surface or a heap")
             return isolated
 
     def trees(self) -> list[Isolated]:
         """The trees in view, that which is meant first; NoTreeError where there is none."""
-        orchard = self.view.orchard
-        feet = sorted(orchard.feet.tolist(), key=lambda foot: foot != orchard.main)
-        grown = [orchard.tree_at(foot) for foot in feet]
-        every = [self.view.isolated(tree) for tree in grown]
-        xyz = self.scan.cloud.xyz
-        found = [
-            own for tree, own in zip(grown, every, strict=True) if is_tree(tree, xyz[own.target])
-        ]
+        every = [self._alone(one) for one in self.view.each()]
+        found = [own for own in every if own is not None]
         if not found:
             with naming(self.scan.file.path), explaining(self.scan.cloud):
                 raise NoTreeError("no tree was found: no foot with branches is in view")
         return found
+
+    def _alone(self, view: View) -> Isolated | None:
+        """The tree that is meant in a view, as `skeletonize` takes it; None: it is none."""
+        alone = Votes().alone(view, Parameters(), self.rng, {})
+        own = alone.isolated or view.points_of_tree()
+        return own if is_tree(alone.tree(), self.scan.cloud.xyz[own.target]) else None
 
 
 def is_tree(skeleton: Skeleton, xyz: Floats) -> bool:

@@ -39,8 +39,8 @@ def test_isolation_says_what_each_point_is_before_anyone_does() -> None:
 
 def test_the_base_of_another_tree_gives_that_tree() -> None:
     at = raw()
-    view = Votes()(at.scan, None, at.params, np.random.default_rng(0), {})
-    trees = [view.isolated(view.orchard.tree_at(foot)) for foot in view.orchard.feet.tolist()]
+    view = Votes().look(at.scan, None, at.params, np.random.default_rng(0), {})
+    trees = [one.points_of_tree() for one in view.each()]
     others = [t for t in trees if np.linalg.norm(t.foot - at.draft.places[at.draft.base]) > 0.5]
     base = max(others, key=lambda tree: tree.target.sum()).foot
     after = apply(apply(at, PickBase(outside(at, base))), Rebuild())

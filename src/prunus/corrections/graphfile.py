@@ -41,8 +41,9 @@ class GraphRecord(BaseModel):
     """What a file says beside its arrays.
 
     `points` are those of the cloud that the machine was given; `to_house` the rotation from the
-    frame of the scan's file; `isolated_at` and `foot` are of isolation, null for none;
-    `rival` of older files.
+    frame of the scan's file; `origin` where the house frame has it: in the middle of the points, or
+    at the place of the grid there (older files do not say); `isolated_at` and `foot` are of
+    isolation, null for none; `rival` of older files.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
@@ -51,6 +52,7 @@ class GraphRecord(BaseModel):
     version: Literal[1] = 1
     points: int
     to_house: tuple[Row, Row, Row]
+    origin: Literal["middle", "grid"] = "middle"
     radius: Annotated[float, Field(gt=0)]
     scorer: str
     base: Annotated[int, Field(ge=0)]
@@ -122,6 +124,7 @@ def write_graph(path: Path, result: Result) -> None:
     told = {
         "points": len(result.scan),
         "to_house": _row(map(_row, result.scan.to_input.rotation.T.tolist())),
+        "origin": "grid",
         "radius": own.radius,
         "scorer": graph.scored.scorer,
         "base": graph.base,

@@ -19,6 +19,7 @@ from prunus.errors import PrunusError
 from prunus.intake import Scan
 from prunus.io.safely import remove
 from prunus.model import PointCloud
+from prunus.model.cloud import middle_of
 from prunus.params import Parameters
 from prunus.result import Result
 
@@ -122,7 +123,9 @@ class Graphs:
 
 def _turned(scan: Scan, file: GraphFile) -> Scan:
     """The scan in the house frame in which it stood when the file was written."""
-    if (file.to_house == scan.cloud.to_input.rotation.T).all():
+    turn, on_grid = file.to_house, file.record.origin == "grid"
+    if on_grid and (turn == scan.cloud.to_input.rotation.T).all():
         return scan
-    cloud = PointCloud.from_xyz(scan.file.xyz, "z-up", scan.file.rgb, file.to_house)
+    middle = None if on_grid else middle_of(scan.file.xyz @ turn.T)
+    cloud = PointCloud.from_xyz(scan.file.xyz, "z-up", scan.file.rgb, turn, middle)
     return replace(scan, cloud=cloud)

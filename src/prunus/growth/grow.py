@@ -65,6 +65,10 @@ class Orchard:
             confidence=confidence, radius=threads.radius[nodes], superpoint=nodes,
         )  # fmt: skip
 
+    def place_of(self, foot: int) -> Floats:
+        """Where the wood of a foot ends (3,)."""
+        return _foot_end(self.graph.threads, foot)
+
     def foot_of_voxel(self) -> Ints:
         """The foot (V,) of the tree that each voxel of the field is wood of; -1 = of none."""
         of_voxel = self.graph.threads.of_voxel
@@ -77,8 +81,13 @@ def _to_the_ends(threads: Threads, grown: Grown) -> Floats:
     Votes at an end lie inside of it: each is the mean of those around.
     """
     nodes = grown.nodes
-    xyz, beyond = threads.xyz[nodes], np.minimum(threads.beyond[nodes], MOST_M)
+    xyz, beyond = threads.xyz[nodes], np.minimum(threads.beyond[nodes, 0], MOST_M)
     tips = np.setdiff1d(np.arange(1, len(nodes)), grown.parent)
-    xyz[tips] -= beyond[tips, :1] * threads.toward_foot[nodes[tips]]
-    xyz[0] += beyond[0, 1] * threads.toward_foot[nodes[0]]
+    xyz[tips] -= beyond[tips, None] * threads.toward_foot[nodes[tips]]
+    xyz[0] = _foot_end(threads, int(nodes[0]))
     return np.asarray(xyz)
+
+
+def _foot_end(threads: Threads, foot: int) -> Floats:
+    beyond = min(float(threads.beyond[foot, 1]), MOST_M)
+    return np.asarray(threads.xyz[foot] + beyond * threads.toward_foot[foot])

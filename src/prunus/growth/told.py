@@ -14,21 +14,24 @@ REACH_M = 0.03
 """A skeleton explains votes so near to it."""
 AROUND_M = 0.08
 """What is no wood and lies so near to a skeleton is around it."""
-MOST = 4.0
+SURE = 4.0
 """No lead over another tree is larger, log odds."""
 TINY = 1e-9
 
 
-def told_of(tree: Skeleton, orchard: Orchard, field: PointField, given: bool) -> Told:
+def told_of(
+    tree: Skeleton, orchard: Orchard, field: PointField, scan: PointField, lead: float
+) -> Told:
     """What the field from which an orchard grew tells of its tree that is meant.
 
-    `given`: its base was, so that no other can be.
+    scan: the field of all that was scanned, where the tree was isolated of more; lead: see
+    `lead_of`.
     """
     threads = orchard.graph.threads
     nodes = tree.superpoint
     return Told(
         role=threads.role[nodes], scatter=threads.scatter[nodes],
-        whole=_whole(tree, orchard, field) | {"lead": MOST if given else _lead(orchard)},
+        whole=_whole(tree, orchard, field) | {"around": _around(tree, scan), "lead": lead},
     )  # fmt: skip
 
 
@@ -36,24 +39,29 @@ def _whole(tree: Skeleton, orchard: Orchard, field: PointField) -> dict[str, flo
     """What is told of it by number.
 
     Of the voxels of the tree: `unclear`, the entropy of their roles in the mean; `explained`, the
-    share whose votes lie near its skeleton. Of all wood in view: `loose`, the share of no tree. Of
-    what lies around the skeleton: `around`, the share that is no wood. `astray`: how far the
-    skeleton runs off the directions of the field, 0 to 2.
+    share whose votes lie near its skeleton. Of all wood in view: `loose`, the share of no tree.
+    `astray`: how far the skeleton runs off the directions of the field, 0 to 2.
     """
     foot = orchard.foot_of_voxel()
-    wood = field.role[:, Role.NO_WOOD] < 1 - LEAST_WOOD
-    axis = cKDTree(tree.xyz)
     own = foot == orchard.main
-    role = field.role[own]
-    near = axis.query(field.xyz, distance_upper_bound=AROUND_M)[0] < AROUND_M
-    voted = axis.query((field.xyz + field.offset)[own], distance_upper_bound=REACH_M)[0]
+    role, votes = field.role[own], (field.xyz + field.offset)[own]
+    near = cKDTree(tree.xyz).query(votes, distance_upper_bound=REACH_M)[0] < REACH_M
     return {
         "unclear": float(-(role * np.log(role + TINY)).sum() / max(len(role), 1)),
-        "explained": _share(voted < REACH_M),
-        "loose": _share(foot[wood] < 0),
-        "around": _share(~wood[near]),
+        "explained": _share(near),
+        "loose": _share(foot[_wood(field)] < 0),
         "astray": _astray(tree, orchard.graph.threads.toward_foot[tree.superpoint]),
     }
+
+
+def _around(tree: Skeleton, scan: PointField) -> float:
+    """The share of the voxels around a skeleton that are no wood."""
+    away = cKDTree(tree.xyz).query(scan.xyz, distance_upper_bound=AROUND_M)[0]
+    return _share(~_wood(scan)[away < AROUND_M])
+
+
+def _wood(field: PointField) -> Bools:
+    return np.asarray(field.role[:, Role.NO_WOOD] < 1 - LEAST_WOOD)
 
 
 def _astray(tree: Skeleton, toward_foot: Floats) -> float:
@@ -63,13 +71,13 @@ def _astray(tree: Skeleton, toward_foot: Floats) -> float:
     return float((length + (way * toward_foot[1:]).sum(axis=1)).sum() / max(length.sum(), TINY))
 
 
-def _lead(orchard: Orchard) -> float:
-    """By how much more speaks for this tree as the one meant than for any other in view."""
+def lead_of(orchard: Orchard) -> float:
+    """By how much more speaks, log odds, for its tree as the one meant than for any other."""
     if len(orchard.feet) == 1:
-        return MOST
+        return SURE
     chance = standing(orchard.graph.threads, orchard.ways.foot, orchard.feet)
     own = orchard.feet == orchard.main
-    return float(np.clip(chance[own][0] - chance[~own].max(), -MOST, MOST))
+    return float(np.clip(chance[own][0] - chance[~own].max(), -SURE, SURE))
 
 
 def _share(some: Bools) -> float:

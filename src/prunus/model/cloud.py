@@ -91,12 +91,14 @@ class PointCloud:
         frame: str = "z-up",
         rgb: ArrayLike | None = None,
         turn: ArrayLike | None = None,
+        middle: ArrayLike | None = None,
     ) -> PointCloud:
         """A cloud from points (P, 3), metres, in a named frame (see `FRAMES`).
 
         Axes are turned as the name says and no further: nothing is levelled, and no row is looked
         for, as `prunus.read_cloud` does. `turn` (3, 3) is a further rotation, from there to the
-        house frame; `prunus.sensing.stance.find_stance` finds one.
+        house frame; `prunus.sensing.stance.find_stance` finds one. `middle` (3,), where in that the
+        origin of the house frame is: the middle of the points, where it is not told.
 
         The points are turned into the house frame and shifted to a local origin in double
         precision, so that large coordinates (UTM) keep their millimetres.
@@ -110,7 +112,8 @@ class PointCloud:
             raise PrunusError(f"unknown frame {frame!r}; expected one of {', '.join(FRAMES)}")
         rotation = FRAMES[frame] if turn is None else _rotation(turn) @ FRAMES[frame]
         turned = points @ rotation.T
-        middle = (turned.min(axis=0) + turned.max(axis=0)) / 2
+        # On the grid, so that a part of the cloud by itself falls on the same places.
+        middle = snapped(middle_of(turned)) if middle is None else np.asarray(middle)
         back = RigidMotion(rotation, -middle).inverse()
         colours = None if rgb is None else frozen(rgb, np.uint8, points.shape, "rgb")
         return cls(snapped(turned - middle), back, colours)
@@ -139,7 +142,7 @@ class PointCloud:
         if count is None or count >= len(self):
             return self
         # Cubes about the middle: a cloud turned half round falls into the same ones.
-        cell = cubes(np.rint(self.xyz / CUBE_M), 1.0)
+        cell = cubes(np.rint((self.xyz - middle_of(self.xyz)) / CUBE_M), 1.0)
         _, cube, holds = np.unique(cell, return_inverse=True, return_counts=True)
         most = max(CHANCE, int(DENSEST * np.median(holds)))
         # Its place (P,) among the points of its cube, these in random order.
@@ -147,6 +150,11 @@ class PointCloud:
         order = order[np.argsort(cube[order], kind="stable")]
         place = np.arange(len(self)) - np.repeat(np.cumsum(holds) - holds, holds)
         return self.take(np.sort(order[place < most])).sample(count, rng)
+
+
+def middle_of(xyz: Floats) -> Floats:
+    """The middle (3,) of the box around points (P, 3)."""
+    return np.asarray((xyz.min(axis=0) + xyz.max(axis=0)) / 2)
 
 
 def _points(xyz: ArrayLike) -> Floats:
