@@ -1,10 +1,10 @@
 """`python -m bench.fit_cuts [--trees 120] [--seed 500000] [--write]`: the confidence of cuts.
 
 Logistic regressions over the evidence of what the rules cut on what the chain makes of simulated
-scans: right is a cut on a branch of which the rules ask for one on the true tree, or that comes
-down with another, at most 3 cm off. Side branches from field scans; leaders, of which there are
-few, from clean ones too. Prints, with each tree judged by a model that has not seen it, how many
-cuts of side branches a limit lets through and how many of them are wrong.
+scans, hard and clean: right is a cut on a branch of which the rules ask for one on the true tree,
+or that comes down with another, at most 3 cm off. Prints, with each tree judged by a model that has
+not seen it, how many cuts of side branches a limit lets through on hard scans and on clean ones,
+and how many of them are wrong.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ OFF = 0.03
 SETTINGS: tuple[Setting, ...] = ("hard", "clean")
 FOLDS = 8
 Told = dict[str, float]
-LIMITS = (0.5, 0.7, 0.8, 0.85, 0.9, 0.91, 0.92, 0.93, 0.94, 0.945, 0.95, 0.955, 0.96, 0.97)
+LIMITS = (0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
 
 
 def is_right(one: Judged) -> bool:
@@ -34,20 +34,23 @@ def is_right(one: Judged) -> bool:
     return one.word == "needless" or (one.word == "right" and abs(one.off) <= OFF)
 
 
-def report(told: list[Told], right: Bools, tree: Ints, clear: Bools) -> None:
-    """Print what each limit lets through of cuts that nothing else speaks against (C,)."""
+def report(told: list[Told], right: Bools, tree: Ints, clear: Bools, hard: Bools) -> None:
+    """Print what each limit lets through of cuts (C,), and of those that are `clear` else."""
     guess = np.zeros(len(right))
     for fold in range(FOLDS):
         own = np.flatnonzero(tree % FOLDS == fold)
         others = np.flatnonzero(tree % FOLDS != fold)
         odds = fit_odds([told[row] for row in others], right[others])
         guess[own] = [odds(told[row]) for row in own]
-    print(f"{len(right)} cuts, {right.mean():.1%} right; {clear.mean():.0%} have no other doubt")
-    for limit in LIMITS:
-        for name, some in (("all", guess >= limit), ("no other doubt", clear & (guess >= limit))):
-            wrong = int((~right[some]).sum())
-            print(f"  over {limit:.2f}, {name}: {some.sum()} cuts ({some.mean():.0%}), {wrong} "
-                  f"wrong ({wrong / max(some.sum(), 1):.1%})")  # fmt: skip
+    for setting, own in (("hard", hard), ("clean", ~hard)):
+        print(f"{setting}: {own.sum()} cuts, {right[own].mean():.1%} right")
+        for limit in LIMITS:
+            over = own & (guess >= limit)
+            told_of = (f"{name} {some.sum()} ({some.sum() / own.sum():.0%}), "
+                       f"{(~right[some]).mean():.1%} wrong"
+                       for name, some in (("all", over), ("no other doubt", clear & over))
+                       if some.any())  # fmt: skip
+            print(f"  over {limit:.2f}: {'; '.join(told_of)}")
 
 
 def main() -> None:
@@ -61,25 +64,28 @@ def main() -> None:
     rules, settings = shipped_rules(), SETTINGS
     cuts = {s: [(n, one) for n in seeds for one in outcomes(n, s, rules)[0].planned]
             for s in settings}  # fmt: skip
-    text = written(cuts["hard"], cuts["hard"] + cuts["clean"])
+    text = written(cuts["hard"], cuts["clean"])
     print(text)
     if chosen.write:
         write_bytes(SHIPPED, text.encode())
 
 
-def written(field: list[tuple[int, Judged]], every: list[tuple[int, Judged]]) -> str:
+def written(hard: list[tuple[int, Judged]], clean: list[tuple[int, Judged]]) -> str:
     """The file of the models, from planned cuts and the seeds of their trees."""
     made = "# The confidence in cuts, made by `python -m bench.fit_cuts`."
-    shoots = [(tree, one) for tree, one in field if one.cut.rule == "side_branches"]
+    every = [*hard, *clean]
+    shoots = [(tree, one) for tree, one in every if one.cut.rule == "side_branches"]
+    of_hard = sum(one.cut.rule == "side_branches" for _, one in hard)
     told, right = _told([one for _, one in shoots])
     clear = [
         not [r for r in one.cut.reasons if not r.startswith("confidence")] for _, one in shoots
     ]
-    report(told, right, np.array([tree for tree, _ in shoots]), np.array(clear))
+    trees = np.array([tree for tree, _ in shoots])
+    report(told, right, trees, np.array(clear), np.arange(len(shoots)) < of_hard)
     lines = fit_odds(told, right).lines("side_branches")
     told, right = _told([one for _, one in every if one.cut.rule == "spacing"])
     print(f"{len(right)} cuts through leaders, {right.mean():.1%} right")
-    leaders = fit_odds([{"least": one["least"]} for one in told], right)
+    leaders = fit_odds([{"likely": one["likely"]} for one in told], right)
     return "\n".join([made, *lines, *leaders.lines("leaders")]) + "\n"
 
 

@@ -82,6 +82,18 @@ def test_a_skeleton_finds_its_cloud_and_gives_nearly_the_same_plan(
     assert np.median([np.linalg.norm(ours[k] - theirs[k]) for k in both]) < 0.005
 
 
+@pytest.mark.parametrize("name", ["skeleton.json", "refined.json"])
+def test_a_skeleton_tells_how_likely_its_branches_are(
+    plan: PlanFile, folder: Path, name: str
+) -> None:
+    again = cut_file(Source(folder / "out" / name), RULES)
+    here, there = ({cut.id: cut.confidence for cut in one.cuts} for one in (plan, again))
+    both = here.keys() & there.keys()
+    assert len(both) > 3
+    assert all(abs(here[one] - there[one]) < 0.15 for one in both)
+    assert max(here[one] for one in both) > 0.3
+
+
 def test_without_its_cloud_every_cut_is_for_a_person(tmp_path: Path) -> None:
     write_skeleton(tmp_path / "skeleton.json", drawn().moved(TO_OPTICAL))
     plan = cut_file(Source(tmp_path / "skeleton.json"), RULES)

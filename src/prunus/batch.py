@@ -213,7 +213,7 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
     write_skeleton(
         folder / "skeleton.json", result.skeleton, trust=trust, review=result.review, **evidence
     )
-    names = named_branches(fine, result.refined.names)
+    names = named_branches(fine, result.refined.names, result.refined.likely)
     write_skeleton(
         folder / "refined.json",
         fine,

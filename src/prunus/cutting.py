@@ -104,6 +104,7 @@ def _on_skeleton(source: Source, rules: CutRules) -> PlanFile:
         "notes": notes,
     }
     named = None if record is None else record.named
+    likely = None if record is None else record.likely
     scan = None
     try:
         scan = _scan_of(source, None if record is None else record.input)
@@ -114,11 +115,11 @@ def _on_skeleton(source: Source, rules: CutRules) -> PlanFile:
     if scan is None:
         to_file = RigidMotion(_upright(skeleton, source.frame), np.zeros(3)).inverse()
         in_house = skeleton.moved(to_file.inverse())
-        plan = plan_cuts(in_house, None, rules, names_of(in_house, named or {}))
+        plan = plan_cuts(in_house, None, rules, names_of(in_house, named or {}), likely)
         return plan_file(plan, to_file, **told)
     cloud = scan.cloud
     in_house = skeleton.moved(cloud.to_input.inverse())
-    tree, names = _refined(in_house, cloud), names_of(in_house, named or {})
+    tree, names = _refined(in_house, cloud, likely), names_of(in_house, named or {})
     plan = plan_cuts(tree, cloud.xyz, rules, names)
     notes += scan.notes
     return plan_file(plan, cloud.to_input, input=scan.record, **told)
@@ -131,12 +132,14 @@ def _scan_of(source: Source, record: InputRecord | None) -> Scan:
     return open_scan(found, source.frame, source.unit)
 
 
-def _refined(skeleton: Skeleton, cloud: PointCloud) -> Refined:
+def _refined(skeleton: Skeleton, cloud: PointCloud, likely: Floats | None) -> Refined:
     """A skeleton refined with the points near it, both in the house frame; a fine one as it is."""
     if len(skeleton) > 1 and np.median(skeleton.lengths[1:]) < FINE:
         seen = np.diff(within(cloud.xyz, skeleton.xyz, SEEN)[0]) > 0
-        return replace(as_it_is(skeleton), radius_error=np.full(len(seen), np.nan), seen=seen)
-    return refined(skeleton, _own(cloud, skeleton))
+        return replace(
+            as_it_is(skeleton, likely), radius_error=np.full(len(seen), np.nan), seen=seen
+        )
+    return refined(skeleton, _own(cloud, skeleton), likely)
 
 
 def _own(cloud: PointCloud, skeleton: Skeleton) -> PointCloud:

@@ -97,7 +97,8 @@ class Result:
     def refined(self) -> Refined:
         """The skeleton refitted to these points, in the house frame; made when first asked for."""
         points = self.tree_cloud.sample(REFINED_WITH, np.random.default_rng(self.seed))
-        return refined(self.in_house, points)
+        likely = None if self.trust is None else self.trust.of_rows(self.in_house)
+        return refined(self.in_house, points, likely)
 
     @cached_property
     def trust(self) -> Trust | None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import cast
 
-from prunus.io.skeletons import BranchName, Word
+from prunus.io.skeletons import DIGITS, BranchName, Word
 from prunus.measure.branches import branches
 from prunus.measure.names import branch_names
-from prunus.model import Skeleton
+from prunus.model import Floats, Skeleton
 
 
 def names_of(skeleton: Skeleton, named: Mapping[int, str]) -> list[str]:
@@ -18,9 +19,18 @@ def names_of(skeleton: Skeleton, named: Mapping[int, str]) -> list[str]:
     return [named.get(int(branch.rows[1]), name) for branch, name in counted]
 
 
-def named_branches(skeleton: Skeleton, names: Iterable[str]) -> list[BranchName]:
-    """The names of all branches of a skeleton, as `refined.json` has them."""
+def named_branches(skeleton: Skeleton, names: Iterable[str], likely: Floats) -> list[BranchName]:
+    """All branches of a skeleton, as `refined.json` has them; `likely` (M,): that each is right."""
     return [
-        BranchName(name=name, label=cast(Word, branch.label.word), nodes=branch.rows.tolist())
+        BranchName(
+            name=name,
+            label=cast(Word, branch.label.word),
+            nodes=branch.rows.tolist(),
+            trust=_known(likely[branch.rows[1]]),
+        )
         for name, branch in zip(names, branches(skeleton), strict=True)
     ]
+
+
+def _known(likely: float) -> float | None:
+    return round(float(likely), DIGITS) if math.isfinite(likely) else None

@@ -23,6 +23,8 @@ Point = tuple[float, float, float]
 Share = Annotated[float, Field(ge=0, le=1)]
 Row = Annotated[int, Field(ge=0)]
 RowOrNone = Annotated[int, Field(ge=-1, le=2**53)]
+DIGITS = 4
+"""A probability is written with so many."""
 
 
 class _Record(BaseModel):
@@ -46,6 +48,7 @@ class BranchName(_Record):
     )
     label: Word
     nodes: list[Row] = Field(description="along it, from the node at which it leaves its parent")
+    trust: Share | None = Field(None, description="the probability that it is right")
 
 
 class BranchTrust(BranchName):
@@ -102,6 +105,15 @@ class SkeletonFile(_Record):
         """The names that the file gives to branches, each by the node after its first."""
         told = self.branches or (self.trust.branches if self.trust else [])
         return {branch.nodes[1]: branch.name for branch in told if len(branch.nodes) > 1}
+
+    @property
+    def likely(self) -> Floats:
+        """How likely the branch of each node (M,) is right; NaN where the file does not say."""
+        likely = np.full(len(self.nodes), np.nan)
+        for branch in [*(self.branches or []), *(self.trust.branches if self.trust else [])]:
+            if branch.trust is not None:
+                likely[branch.nodes[1:]] = branch.trust
+        return likely
 
 
 EVIDENCE = {name for name, field in SkeletonFile.model_fields.items() if field.default is None}

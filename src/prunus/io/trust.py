@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prunus.io.skeletons import TrustRecord
+from prunus.io.skeletons import DIGITS, TrustRecord
 from prunus.measure.branches import branches
 from prunus.measure.names import branch_names
 from prunus.measure.trust import Trust
@@ -23,10 +23,6 @@ def trust_record(skeleton: Skeleton, trust: Trust | None) -> TrustRecord | None:
     return TrustRecord.model_validate(
         {"tree": round(trust.tree, DIGITS), "edges": edges, "branches": rows}
     )
-
-
-DIGITS = 4
-"""A probability is written with so many."""
 
 
 def _rounded(values: Floats) -> list[float]:

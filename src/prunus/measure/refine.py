@@ -27,14 +27,16 @@ class Refined:
 
     `skeleton` has a node about every centimetre; `superpoint` is kept at the node that stands for
     it, -1 elsewhere. `radius_error` is the standard deviation of the radius, metres; `unknown` why
-    a radius is NaN (see `Unknown`); `seen` whether points of the scan lie at the node. `named` are
-    the names of the branches before they were refined, if they were.
+    a radius is NaN (see `Unknown`); `seen` whether points of the scan lie at the node; `likely` how
+    likely its branch is right, NaN where nobody knows. `named` are the names of the branches before
+    they were refined, if they were.
     """
 
     skeleton: Skeleton
     radius_error: Floats
     unknown: Ints
     seen: Bools
+    likely: Floats
     named: tuple[str, ...] = ()
 
     @property
@@ -59,23 +61,25 @@ class Refined:
         return np.array([of.get(node, np.nan) if node >= 0 else np.nan for node in superpoints])
 
 
-def refined(skeleton: Skeleton, cloud: PointCloud) -> Refined:
+def refined(skeleton: Skeleton, cloud: PointCloud, likely: Floats | None = None) -> Refined:
     """Refine a skeleton with the points of its tree, both in the house frame.
 
     The cameras are taken to stand at smaller Y. A stretch without points stays where it is.
+    likely (M,): how likely the branch of each row is right.
     """
+    likely = np.full(len(skeleton), np.nan) if likely is None else likely
     if len(skeleton) == 1:
         nothing = np.full(len(skeleton), int(Unknown.FEW_POINTS))
         unknown = np.full(len(skeleton), np.nan)
-        return Refined(skeleton.with_radius(unknown), unknown, nothing, nothing < 0)
+        return Refined(skeleton.with_radius(unknown), unknown, nothing, nothing < 0, likely)
     lines, found = lines_of(skeleton)
     label = np.array([int(branch.label) for branch in found])
     least = np.array([len(branch.rows) for branch in found])
     fit = fitted(lines, label, least, cloud.xyz)
-    return _assembled(skeleton, found, fit)
+    return _assembled(skeleton, found, fit, likely)
 
 
-def _assembled(skeleton: Skeleton, found: list[Branch], fit: Fit) -> Refined:
+def _assembled(skeleton: Skeleton, found: list[Branch], fit: Fit, likely: Floats) -> Refined:
     """One tree of the lines, each hung on the station of its parent at which it starts."""
     lines, taper = fit.lines, fit.tapers
     station = np.concatenate([[0], np.setdiff1d(np.arange(len(lines.xyz)), lines.first)])
@@ -103,7 +107,7 @@ def _assembled(skeleton: Skeleton, found: list[Branch], fit: Fit) -> Refined:
         np.where(stands, skeleton.superpoint[old], -1),
     )  # fmt: skip
     seen, names = supported(lines, fit.count)[station], branch_names(skeleton, found)
-    return Refined(tree, error, taper.unknown[station], seen, tuple(names))
+    return Refined(tree, error, taper.unknown[station], seen, likely[old], tuple(names))
 
 
 def _standing(line: Floats, places: Floats) -> Ints:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from prunus.corrections import State, Work
-from prunus.corrections.draft import pair_of
+from prunus.corrections.draft import Pair, pair_of
 from prunus.cutting import plan_file
 from prunus.errors import PrunusError
 from prunus.io.plans import PlanFile, made_on, read_plan, write_plan
@@ -16,7 +16,7 @@ from prunus.io.skeletons import sha256_of
 from prunus.measure import branches
 from prunus.measure.cuts import Plan, plan_cuts
 from prunus.measure.refine import refined
-from prunus.model import Kind, Skeleton
+from prunus.model import Floats, Kind, Skeleton
 from prunus.result import REFINED_WITH
 
 PLAN = "plan.json"
@@ -41,22 +41,29 @@ def planned(state: State) -> Planned:
     if len(own) == 0:
         raise PrunusError("no point is marked as the tree's: there is nothing to plan by")
     points = own.sample(REFINED_WITH, np.random.default_rng(state.result.seed))
-    coarse = _vouched(state)
-    tree = refined(coarse, points)
+    coarse = state.draft.numbered()
+    tree = refined(coarse, points, _vouched(state, coarse))
     plan = plan_cuts(tree, state.scan.xyz)
     return Planned(plan, tree.skeleton, _nodes(coarse, tree.names))
 
 
-def _vouched(state: State) -> Skeleton:
-    """The tree with its nodes in place of superpoints; what a person told of it is sure.
+def _vouched(state: State, tree: Skeleton) -> Floats:
+    """How likely the branch of each row (M,) of the corrected tree is right.
 
-    So it is for a new search; of a branch drawn by hand the machine knows no confidence.
+    What a person told is sure; of the rest, what the machine's tree had there.
     """
-    tree = state.draft.numbered()
+    trust, machine = state.result.trust, state.result.in_house
+    likely = np.full(len(machine), np.nan) if trust is None else trust.of_rows(machine)
+    had = dict(zip(_pairs(machine), likely.tolist(), strict=True))
+    return np.array(
+        [1.0 if pair in state.held.label else had.get(pair, np.nan) for pair in _pairs(tree)]
+    )
+
+
+def _pairs(tree: Skeleton) -> list[Pair]:
+    """The nodes of the edge into each row."""
     nodes = tree.superpoint.tolist()
-    pairs = [pair_of(nodes[above], node) for above, node in zip(tree.parent, nodes, strict=True)]
-    told = np.array([pair in state.held.label for pair in pairs])
-    return replace(tree, confidence=np.where(told, 1.0, tree.confidence))
+    return [pair_of(nodes[above], node) for above, node in zip(tree.parent, nodes, strict=True)]
 
 
 def _nodes(tree: Skeleton, names: list[str]) -> dict[str, int]:

@@ -11,7 +11,7 @@ from prunus.model import Label
 
 NAN = float("nan")
 GOOD = Evidence(
-    least=0.98, path=0.9, seen=1.0, length=0.3, diameter=0.01, doubt=0.002, thick=0.4, bend=4.0,
+    likely=0.95, way=0.95, seen=1.0, length=0.3, diameter=0.01, doubt=0.002, thick=0.4, bend=4.0,
     slant=1.1, touch=0.3, touched="leader 2", upright=80.0, spread=0.009, aside=0.003,
     behind=0.0, past=0.0,
 )  # fmt: skip
@@ -23,7 +23,7 @@ def sure(evidence: Evidence) -> float:
 
 def test_what_speaks_against_a_branch_lowers_the_confidence() -> None:
     for name, worse in (
-        ("least", 0.5), ("touch", 0.01), ("bend", 40.0), ("slant", 3.0), ("spread", 0.02),
+        ("likely", 0.5), ("way", 0.5), ("bend", 40.0), ("slant", 3.0), ("spread", 0.02),
         ("aside", 0.015), ("behind", 0.5),
     ):  # fmt: skip
         assert sure(replace(GOOD, **{name: worse})) < sure(GOOD), name
@@ -37,12 +37,12 @@ def test_what_is_unknown_counts_as_usual() -> None:
 
 
 def test_a_branch_of_which_nothing_is_known_has_no_confidence() -> None:
-    assert confidence_of(Label.SIDE_BRANCH, replace(GOOD, least=NAN)) == 0
-    assert confidence_of(Label.LEADER, replace(GOOD, least=NAN)) == 0
+    assert confidence_of(Label.SIDE_BRANCH, replace(GOOD, likely=NAN)) == 0
+    assert confidence_of(Label.LEADER, replace(GOOD, likely=NAN)) == 0
 
 
 def test_no_cut_through_a_leader_is_so_sure_that_a_machine_may_make_it() -> None:
-    fine, doubted = replace(GOOD, least=1.0), replace(GOOD, least=0.5)
+    fine, doubted = replace(GOOD, likely=1.0), replace(GOOD, likely=0.5)
     assert confidence_of(Label.LEADER, doubted) < confidence_of(Label.LEADER, fine) < 0.5
 
 
@@ -53,4 +53,4 @@ def test_the_shipped_model_knows_every_feature() -> None:
 
 
 def test_unknown_confidences_do_not_pass_for_known() -> None:
-    assert features(replace(GOOD, least=0.0))["least"] == pytest.approx(-3.912, abs=1e-3)
+    assert features(replace(GOOD, likely=0.0))["likely"] == pytest.approx(-3.892, abs=1e-3)

@@ -15,6 +15,7 @@ from prunus.result import Result
 from tests.conftest import simulated
 from tests.measure.cuts.trees import drawn
 
+SURE = 0.99
 FAR = np.array([[5.0, 5.0, 5.0]])
 EVERYTHING = CutRules.parse(
     {"spacing": {"closest": 0.3}, "height": {"over": 1.0, "to": 0.8}}, "test"
@@ -46,7 +47,7 @@ def plan(found: Result) -> Plan:
 
 def test_the_cut_of_the_drawn_branch() -> None:
     skeleton = drawn()
-    (cut,) = plan_cuts(skeleton, tubes(skeleton)).cuts
+    (cut,) = plan_cuts(skeleton, tubes(skeleton), likely=vouched(skeleton)).cuts
     assert cut.id == "side_branches:side-branch-1" and cut.branch == "side branch 1"
     assert cut.point == pytest.approx((0.03, 0.0, 0.5))
     assert cut.branch_direction == pytest.approx((1, 0, 0))
@@ -64,26 +65,36 @@ def test_without_a_cloud_every_cut_is_for_a_person() -> None:
     assert cut.reasons[-1] == "no cloud: what stands in the way is not known"
 
 
-def reasons(skeleton: Skeleton, scan: Floats | None = None, **groups: dict[str, object]) -> str:
+def test_of_which_nobody_knows_how_likely_it_is_no_cut_is_sure() -> None:
+    skeleton = drawn()
+    (cut,) = plan_cuts(skeleton, tubes(skeleton)).cuts
+    assert cut.confidence == 0
+    assert cut.reasons == ("how likely its branch is right is not known",)
+
+
+def vouched(skeleton: Skeleton, label: Label | None = None, likely: float = SURE) -> Floats:
+    """How likely the branch of each row is right: those of a label so, all others surely."""
+    return np.where(skeleton.label == label, likely, SURE)
+
+
+def reasons(
+    skeleton: Skeleton,
+    scan: Floats | None = None,
+    likely: Floats | None = None,
+    **groups: dict[str, object],
+) -> str:
     scan = tubes(drawn()) if scan is None else scan
-    cuts = plan_cuts(skeleton, scan, CutRules.parse(groups, "test")).cuts
+    likely = vouched(skeleton) if likely is None else likely
+    cuts = plan_cuts(skeleton, scan, CutRules.parse(groups, "test"), likely=likely).cuts
     return "; ".join(reason for cut in cuts for reason in cut.reasons)
-
-
-def with_confidence(skeleton: Skeleton, label: Label, value: float) -> Skeleton:
-    sure = np.where(skeleton.label == label, value, skeleton.confidence)
-    return replace(skeleton, confidence=sure)
 
 
 def test_what_is_doubtful_is_said() -> None:
     skeleton = drawn()
     unknown = skeleton.with_radius(np.full(len(skeleton), np.nan))
     assert "its diameter is not known" in reasons(unknown)
-    doubted = with_confidence(skeleton, Label.SIDE_BRANCH, 0.5)
-    assert "one of its edges has confidence 0.50" in reasons(doubted)
-    assert "under 0.95" in reasons(with_confidence(skeleton, Label.SIDE_BRANCH, 0.02))
-    path = with_confidence(skeleton, Label.SUPPORT, 0.2)
-    assert "the way to it from the base has an edge of confidence 0.20" in reasons(path)
+    for doubted in Label.SIDE_BRANCH, Label.LEADER, Label.SUPPORT:
+        assert "under 0.9" in reasons(skeleton, likely=vouched(skeleton, doubted, 0.02)), doubted
     thick = skeleton.with_radius(np.where(skeleton.label == Label.SIDE_BRANCH, 0.009, 0.01))
     assert "90% as thick as its leader: it may be one" in reasons(thick)
     assert "18 mm thick: it may be a leader" in reasons(thick)

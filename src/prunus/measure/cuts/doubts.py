@@ -25,12 +25,10 @@ def doubts_of(demand: Demand, evidence: Evidence, confidence: float, rules: CutR
     review, found = rules.review, list(demand.doubts)
     if demand.limb.label == Label.LEADER and getattr(rules, demand.rule).always_review:
         found.append("it goes through a leader")
-    if confidence < review.confidence:
+    if not math.isfinite(evidence.likely):
+        found.append("how likely its branch is right is not known")
+    elif confidence < review.confidence:
         found.append(f"confidence {_floor(confidence):.2f}, under {review.confidence:g}")
-    if evidence.least < review.edge:
-        found.append(f"one of its edges has confidence {evidence.least:.2f}")
-    if evidence.path < review.path:
-        found.append(f"the way to it from the base has an edge of confidence {evidence.path:.2f}")
     if not math.isfinite(evidence.diameter):
         found.append("its diameter is not known")
     elif evidence.doubt > UNSURE * evidence.diameter:

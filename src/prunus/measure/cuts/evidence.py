@@ -1,4 +1,4 @@
-"""What is known of a branch that is to be cut: by its edges, its shape, and points near it."""
+"""What is known of a branch that is to be cut: of its rightness, its shape, and points near it."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ TINY = 1e-9
 class Evidence:
     """What is known of a branch to be cut; NaN where nothing is.
 
-    From its edges: `least`, the least confidence of its own, `path`, of those from the base to it,
-    and `seen`, the share of its length with points. From its shape: `length` and `diameter` at the
-    cut with its standard deviation `doubt`, metres; `thick`, that over its parent's; `bend` at its
-    foot, degrees; `slant`, how far it runs in its parent's bark over the parent's radius; `touch`,
-    metres from its tip to the nearest branch that is not its own, `touched`; `upright`, how steeply
-    its parent rises where it leaves, degrees.
+    `likely`, how likely it is right, `way`, the least of those from the base to it
+    (`measure.trust`), and `seen`, the share of its length with points. From its shape: `length` and
+    `diameter` at the cut with its standard deviation `doubt`, metres; `thick`, that over its
+    parent's; `bend` at its foot, degrees; `slant`, how far it runs in its parent's bark over the
+    parent's radius; `touch`, metres from its tip to the nearest branch that is not its own,
+    `touched`; `upright`, how steeply its parent rises where it leaves, degrees.
 
     From the points: `spread`, their mean distance from its axis at the cut, metres; `aside`, how
     far from the cut the line through them passes; `behind`, how much of the straight way back
@@ -36,8 +36,8 @@ class Evidence:
     cubes of 1 cm hold wood ahead of its tip that the skeleton does not have.
     """
 
-    least: float
-    path: float
+    likely: float
+    way: float
     seen: float
     length: float
     diameter: float
@@ -63,8 +63,8 @@ def evidence_of(limbs: Limbs, tree: Refined, demand: Demand, points: Nearby | No
     touch, touched = _nearest_other(limbs, limb)
     told = {} if points is None else told_by_points(limbs, limb, radius, demand.along, points)
     return Evidence(
-        least=_least(skeleton.confidence[rows]),
-        path=_least(skeleton.confidence[limbs.path_to(limb)]),
+        likely=_least(tree.likely[rows]),
+        way=_least(tree.likely[limbs.path_to(limb)]),
         seen=tree.seen_share(rows),
         length=limb.reach,
         diameter=diameter,

@@ -71,17 +71,19 @@ def plan_cuts(
     scan: Floats | None = None,
     rules: CutRules | None = None,
     names: list[str] | None = None,
+    likely: Floats | None = None,
 ) -> Plan:
     """The pruning plan of a tree in the house frame.
 
     scan: all points (P, 3) around the tree, house frame, its own among them; without them no way
     to a cut is known, and every cut is reviewed. A plain skeleton has the radii it holds, and its
     lengths are taken as told. names: of the branches, as `measure.branches` has them, where they
-    are others than the tree's own.
+    are others than the tree's own. likely (M,): of a plain skeleton, how likely the branch of each
+    row is right; where that is not known, no cut is sure.
     """
     rules = rules or shipped_rules()
     measured = isinstance(tree, Refined)
-    tree = tree if isinstance(tree, Refined) else as_it_is(tree)
+    tree = tree if isinstance(tree, Refined) else as_it_is(tree, likely)
     limbs = Limbs.of(tree.skeleton, names or tree.names, measured=measured)
     said = verdicts(limbs, rules)
     demands = [one for one in said if isinstance(one, Demand)]
@@ -92,10 +94,18 @@ def plan_cuts(
     return Plan(tuple(cuts), tuple(one for one in said if isinstance(one, Left)), rules)
 
 
-def as_it_is(skeleton: Skeleton) -> Refined:
-    """A skeleton that was not refined: its radii without doubt, all of it seen."""
-    error = np.where(np.isfinite(skeleton.radius), 0.0, np.nan)
-    return Refined(skeleton, error, np.zeros(len(skeleton), np.int64), np.ones(len(skeleton), bool))
+def as_it_is(skeleton: Skeleton, likely: Floats | None = None) -> Refined:
+    """A skeleton that was not refined: its radii without doubt, all of it seen.
+
+    likely (M,): how likely the branch of each row is right.
+    """
+    return Refined(
+        skeleton,
+        radius_error=np.where(np.isfinite(skeleton.radius), 0.0, np.nan),
+        unknown=np.zeros(len(skeleton), np.int64),
+        seen=np.ones(len(skeleton), np.bool_),
+        likely=np.full(len(skeleton), np.nan) if likely is None else likely,
+    )
 
 
 def _cut(

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.measure.branches import branches
+from prunus.measure.branches import branch_of_rows, branches
 from prunus.measure.trust.evidence import Known, of_branches, of_edges, of_tree
 from prunus.measure.trust.model import WHOLE, Model, Parts, shipped_model
-from prunus.model import Floats
+from prunus.model import Floats, Skeleton
 
 __all__ = ["Known", "Model", "Parts", "Trust", "shipped_model", "trust_in"]
 
@@ -41,6 +41,10 @@ class Trust:
     meant: float = 1.0
     wood: float = 1.0
     form: float = 1.0
+
+    def of_rows(self, skeleton: Skeleton) -> Floats:
+        """How likely the branch of each row (M,) of that skeleton is right."""
+        return self.branch[branch_of_rows(branches(skeleton), len(skeleton))]
 
 
 def trust_in(known: Known, model: Model | None = None) -> Trust:
