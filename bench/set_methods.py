@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -70,11 +71,17 @@ def _imported(name: str) -> Callable[..., Skeleton]:
 def tried(method: Method, xyz: Floats, base: Floats | None) -> tuple[Found | None, float]:
     """What a method makes of points, None where it refuses them, and its CPU seconds."""
     cloud = PointCloud.from_xyz(xyz)
-    before = time.process_time()
+    before = _cpu_s()
     try:
         found = method(cloud, base)
     except PrunusError as error:
         print(f"  refused: {error}", file=sys.stderr)
         found = None
-    spent = time.process_time() - before
+    spent = _cpu_s() - before
     return (Found(found) if isinstance(found, Skeleton) else found), spent
+
+
+def _cpu_s() -> float:
+    """CPU seconds of this process, and of the processes that it started and that have ended."""
+    children = os.times()
+    return time.process_time() + children.children_user + children.children_system

@@ -34,10 +34,31 @@ Told = Callable[[list[Figures]], dict[str, str]]
 
 def main() -> None:
     """Measure, and print a table a set as it is done."""
-    chosen = _options()
-    methods = {name: method_of(name) for name in chosen.method}
+    chosen = parser_of("python -m bench.sets", ["default", "paper"]).parse_args()
+    run(chosen, {name: method_of(name) for name in chosen.method}, USUAL, figures_of)
+
+
+def parser_of(program: str, methods: list[str]) -> argparse.ArgumentParser:
+    """What may be said of sets and methods, these methods unless others are named."""
+    parser = argparse.ArgumentParser(prog=program)
+    parser.add_argument("--set", nargs="+", choices=[*SETS, MEASURED], metavar="NAME",
+                        help=f"of {', '.join([*SETS, MEASURED])}")  # fmt: skip
+    parser.add_argument("--trees", type=int, help="so many a set")
+    parser.add_argument("--seed", type=int, help="the first seed of each set")
+    parser.add_argument("--method", nargs="+", default=methods, metavar="NAME",
+                        help=f"of {', '.join(METHODS)}, or module:function")  # fmt: skip
+    parser.add_argument("--base", action="store_true", help="give every method the true base")
+    parser.add_argument("--cache", type=Path, help="the folder in which cases are kept")
+    parser.add_argument("--measured", type=Path, help="the folder of measured trees")
+    return parser
+
+
+def run(
+    chosen: argparse.Namespace, methods: dict[str, Method], usual: list[str], measure: Measure
+) -> None:
+    """A table a set, of the usual ones where none are chosen; `measure` is for simulated trees."""
     _warm(methods)
-    for name in chosen.set or [*USUAL, *([MEASURED] if chosen.measured else [])]:
+    for name in chosen.set or [*usual, *([MEASURED] if chosen.measured else [])]:
         if name == MEASURED:
             if chosen.measured is None:
                 sys.exit("bench.sets: the set 'measured' needs --measured FOLDER")
@@ -49,21 +70,7 @@ def main() -> None:
             seeds = range(first, first + (chosen.trees or SETS[name].trees))
             cases = (case_of(name, seed, chosen.cache) for seed in seeds)
             about = f"{SETS[name].about}; seeds {seeds[0]} to {seeds[-1]}"
-            _table(name, about, cases, methods, chosen.base, figures_of, lines_of)
-
-
-def _options() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="python -m bench.sets")
-    parser.add_argument("--set", nargs="+", choices=[*SETS, MEASURED], metavar="NAME",
-                        help=f"of {', '.join([*SETS, MEASURED])}")  # fmt: skip
-    parser.add_argument("--trees", type=int, help="so many a set")
-    parser.add_argument("--seed", type=int, help="the first seed of each set")
-    parser.add_argument("--method", nargs="+", default=["default", "paper"], metavar="NAME",
-                        help=f"of {', '.join(METHODS)}, or module:function")  # fmt: skip
-    parser.add_argument("--base", action="store_true", help="give every method the true base")
-    parser.add_argument("--cache", type=Path, help="the folder in which cases are kept")
-    parser.add_argument("--measured", type=Path, help="the folder of measured trees")
-    return parser.parse_args()
+            _table(name, about, cases, methods, chosen.base, measure, lines_of)
 
 
 def _warm(methods: dict[str, Method]) -> None:
@@ -90,7 +97,9 @@ def _table(
             print(f"  {case.name} {title}: {_in_short(records[title][-1])}", file=sys.stderr)
     columns = {title: told(own) for title, own in records.items()}
     print(f"\n{name}: {about}{'; the base given' if base else ''}")
-    rows = list(next(iter(columns.values())))
+    # A row of which no method has anything says nothing.
+    titles = next(iter(columns.values()))
+    rows = [row for row in titles if any(own[row] != "-" for own in columns.values())]
     width = max(map(len, rows))
     print(f"{'':{width}}  " + "".join(f"{title:>32}" for title in columns))
     for row in rows:
