@@ -101,7 +101,9 @@ def cylinders_of(xyz: Floats, python: str, inputs: Sequence[int], limit_s: float
         if done.returncode != 0:
             raise PrunusError(f"TreeQSM: {_why(done)}")
         with np.load(target) as held:
-            sizes = {name: np.float64(held[name]) for name in ("start", "axis", "length", "radius")}
+            sizes = {
+                name: held[name].astype(float) for name in ("start", "axis", "length", "radius")
+            }
             return Cylinders(**sizes, parent=held["parent"].astype(np.int64))
 
 
