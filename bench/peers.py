@@ -37,7 +37,7 @@ from prunus.errors import PrunusError
 from prunus.model import Floats, PointCloud, Skeleton
 
 SETS_HERE = ["straight", "straight_side", "ordinary", "hard"]
-WITHOUT_LABELS = ("failed", "geometry", "f1 2", "f1 5", "base", "wire")
+WITHOUT_LABELS = ("failed", "geometry", "unasked", "f1 2", "f1 5", "base", "wire")
 """The figures that need no labels."""
 LIMIT_S = 600.0
 INPUTS = (1, 2, 2)

@@ -5,7 +5,8 @@
 PatchDiam2Max about what it estimates from the foot of the stem, TreeQSM makes a model of each
 combination, and the one that its authors' default criterion prefers is kept: the least mean
 distance of points from cylinders. OUT holds that model's cylinders (C,): start, axis (C, 3),
-length, radius, metres, and the row of the parent, -1 for none.
+length, radius, metres, and the row of the parent, -1 for none. It draws at random, partly from
+generators that nothing outside can seed: no two runs are alike.
 """
 
 import sys
@@ -20,7 +21,6 @@ COLUMNS = ("start", "axis", "length", "radius", "parent")
 
 def main(source: str, target: str, *counts: str) -> None:
     """Make the models, and write the cylinders of the best."""
-    np.random.seed(0)  # noqa: NPY002 - PyTLidar draws from numpy's common generator
     with np.load(source) as held:
         xyz = held["xyz"]
     inputs = build_inputs(xyz, tuple(map(int, counts)), savetxt=0, savepdf=0)[0]

@@ -80,8 +80,8 @@ def lines_of(records: Sequence[Figures]) -> dict[str, str]:
     """What is printed of all cases of a set, by what it is."""
     return {
         "A2, median [95 %] / worst": _median(records, "ratio"),
-        "   of it on true wood not asked for": _mean(records, "unasked"),
         "geometry ratio, median [95 %] / worst": _median(records, "geometry"),
+        "   of either on true wood not asked for": _mean(records, "unasked"),
         "F1 at 2 cm, mean / worst": _mean(records, "f1 2", min),
         "F1 at 5 cm, mean / worst": _mean(records, "f1 5", min),
         "leaders found": _of(records, ["leaders_found"], ["leaders_true"]),

@@ -86,7 +86,7 @@ def test_nothing_that_asks_for_labels_is_measured() -> None:
     every = np.ones(len(whole), np.bool_)
     case = Case("drawn", whole.xyz, every, whole, every, np.zeros((0, 3)))
     right, none = peers.geometry_of(case, Found(whole)), peers.geometry_of(case, None)
-    assert right == {"failed": 0, "geometry": 0, "f1 2": 1, "f1 5": 1, "base": 0}
+    assert right == {"failed": 0, "geometry": 0, "unasked": 0, "f1 2": 1, "f1 5": 1, "base": 0}
     assert (none["failed"], none["geometry"], none["f1 5"]) == (1, 1, 0)
 
 
