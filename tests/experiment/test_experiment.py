@@ -36,6 +36,7 @@ def test_every_way_is_tried_and_written(folder: Path) -> None:
     assert float(rows[1]["edit_ratio"]) == pytest.approx(ratio)
 
 
+@pytest.mark.slow
 def test_every_trial_has_its_edits_by_length_and_the_tables_show_them(folder: Path) -> None:
     held = json.loads((folder / "results.json").read_text())
     for trial in held["trials"]:
@@ -47,11 +48,13 @@ def test_every_trial_has_its_edits_by_length_and_the_tables_show_them(folder: Pa
     assert "edit ratio by length, median" in (folder / "results.md").read_text()
 
 
+@pytest.mark.slow
 def test_on_a_clean_scan_ours_needs_fewer_edits_than_the_paper(folder: Path) -> None:
     ways = json.loads((folder / "results.json").read_text())["ways"]
     assert ways["default"]["edit_ratio"]["median"] < ways["paper"]["edit_ratio"]["median"]
 
 
+@pytest.mark.slow
 def test_the_page_holds_tables_and_figures_and_needs_no_network(folder: Path) -> None:
     page = (folder / "index.html").read_text()
     assert page.count("<svg") == 8
@@ -87,6 +90,7 @@ def test_the_spread_leaves_out_what_is_no_number() -> None:
     assert spread([])["median"] is None
 
 
+@pytest.mark.slow
 def test_tables_are_markdown(folder: Path) -> None:
     held = json.loads((folder / "results.json").read_text())
     tables = [line for line in lines_of(held) if line.startswith("|")]

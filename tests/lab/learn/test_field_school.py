@@ -100,6 +100,7 @@ def test_an_interrupted_training_ends_as_one_that_was_not(folder: Path, tmp_path
     assert told[0] == told[1] and [step for step, _ in told[0]] == [2, 4, 6]
 
 
+@pytest.mark.slow
 def test_the_weights_say_what_the_network_says(folder: Path) -> None:
     example = FieldExample.read(min((folder / "examples").glob("*.npz")))
     voxels = lesson_of(example).voxels
@@ -110,6 +111,7 @@ def test_the_weights_say_what_the_network_says(folder: Path) -> None:
     assert field.role == pytest.approx(said.detach().numpy(), abs=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("file", ["field.onnx", "checkpoint.pt"])
 def test_training_goes_on_from_weights_in_a_file(folder: Path, file: str) -> None:
     net = begun(folder / file, 1)
@@ -125,12 +127,14 @@ def test_corrected_trees_are_learned_from_by_the_shipped_network_unless_said_oth
     begun(own.begins, 0)
 
 
+@pytest.mark.slow
 def test_a_training_that_goes_on_takes_fewer_steps(folder: Path, tmp_path: Path) -> None:
     own = FieldCourse(folder=tmp_path, recipe=recipe(), start=str(folder / "field.onnx"))
     field_school(own, silently, str)
     assert read_checkpoint(tmp_path / "checkpoint.pt")["step"] == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
@@ -192,6 +196,7 @@ def test_some_of_enough_corrected_trees_are_held_out(trees: int, held_out: list[
     assert sorted(learned + others) == paths
 
 
+@pytest.mark.slow
 def test_a_corrected_tree_is_learned_from_and_said_to_be_little(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
