@@ -56,6 +56,10 @@ USUAL_FORM, USUAL_WOOD, UPRIGHT_RISE = 0.90, 0.90, 0.60
 """Where form or wood is less likely, or leaders rise less, it is looked whether the tree lies."""
 
 
+SURER = 0.015
+"""A tree lies where it is so much surer in another frame (`upright.sureness`)."""
+
+
 @dataclass(frozen=True)
 class Evidence:
     """What tells a tree from what is none.
@@ -147,12 +151,14 @@ class Evidence:
 def lies(cloud: PointCloud) -> bool:
     """Whether a tree is surer in another frame, for which all evidence in its cloud is.
 
-    None of 54 scans of standing trees was told to lie (other forms, rows and measured trees too).
+    None of 154 scans of standing trees was told to lie (other forms, rows and measured trees too);
+    of 20 clouds of lying ones all were, and were surer by 0.026 at least.
     """
     frame = frame_by_evidence(cloud)
     if not frame:
         return False
-    return sureness_in(cloud.to_input.apply(cloud.xyz), frame) > sureness_of(cloud)
+    upright = sureness_in(cloud.to_input.apply(cloud.xyz), frame)
+    return upright > sureness_of(cloud) + SURER
 
 
 def rise_of_leaders(skeleton: Skeleton) -> float:

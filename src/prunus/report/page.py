@@ -36,7 +36,8 @@ WIDTH, HEIGHT = 2.1, 1.7
 """The cloud in the scene is at most so wide and so high when the page opens."""
 LAYOUT: dict[str, Any] = {
     "margin": {"l": 0, "r": 0, "t": 0, "b": 0},
-    "legend": {"x": 0, "y": 1, "bgcolor": "rgba(255,255,255,0.75)", "itemsizing": "constant"},
+    # Below the scene, where it hides no branch.
+    "legend": {"orientation": "h", "x": 0, "y": 0, "yanchor": "top", "itemsizing": "constant"},
     "scene": {
         "aspectmode": "manual",
         "camera": {

@@ -40,3 +40,12 @@ def test_a_person_is_told_what_is_doubtful() -> None:
     told = review_of(drawn, Trust(fine.edge, doubts, 0.5))
     assert told[0] == "only 50% of its edges are likely right"
     assert sorted(told[1:]) == [f"leader {n} is likely wrong (10% sure)" for n in (1, 2, 3)]
+
+
+def test_that_another_tree_may_be_meant_is_not_said_of_every_branch() -> None:
+    drawn = tree()
+    some = branches(drawn)
+    trust = Trust(np.full(len(drawn), 0.25), np.full(len(some), 0.24), 0.25, meant=0.27)
+    told = review_of(drawn, trust)
+    assert told[0].startswith("another tree in view may be meant as well (27% likely this one)")
+    assert told[1:] == ["only 25% of its edges are likely right"]

@@ -8,7 +8,7 @@ skeleton is right there. Calibrated on simulated trees: docs/trust.md.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -42,6 +42,11 @@ class Trust:
     wood: float = 1.0
     form: float = 1.0
 
+    @property
+    def whole(self) -> float:
+        """How likely it is the tree that is meant, lowered where it is likely none."""
+        return self.meant * min(1.0, self.wood / WOOD)
+
     def of_rows(self, skeleton: Skeleton) -> Floats:
         """How likely the branch of each row (M,) of that skeleton is right."""
         return self.branch[branch_of_rows(branches(skeleton), len(skeleton))]
@@ -56,5 +61,6 @@ def trust_in(known: Known, model: Model | None = None) -> Trust:
     told = zip(found, of_branches(known, form), strict=True)
     branch = np.array([model.parts.branch[one.label](said) for one, said in told])
     edge = np.array([np.nan, *map(model.parts.edge, of_edges(known, branch, form))])
-    sure = meant * min(1.0, wood / WOOD)
-    return Trust(sure * edge, sure * branch, sure * float(np.nanmean(edge)), meant, wood, form)
+    own = Trust(edge, branch, float(np.nanmean(edge)), meant, wood, form)
+    sure = own.whole
+    return replace(own, edge=sure * edge, branch=sure * branch, tree=sure * own.tree)

@@ -46,9 +46,11 @@ def review_of(skeleton: Skeleton, trust: Trust) -> list[str]:
     if trust.tree < TREE:
         found.append(f"only {trust.tree:.0%} of its edges are likely right")
     some = branches(skeleton)
+    # That another tree may be meant, or this be none, is said above once, not of every branch.
+    least = FRAME * trust.whole
     for name, branch, likely in zip(
         branch_names(skeleton, some), some, trust.branch.tolist(), strict=True
     ):
-        if branch.label != Label.SIDE_BRANCH and likely < FRAME:
+        if branch.label != Label.SIDE_BRANCH and likely < least:
             found.append(f"{name} is likely wrong ({likely:.0%} sure)")
     return found
