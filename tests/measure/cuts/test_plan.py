@@ -93,8 +93,10 @@ def test_what_is_doubtful_is_said() -> None:
     skeleton = drawn()
     unknown = skeleton.with_radius(np.full(len(skeleton), np.nan))
     assert "its diameter is not known" in reasons(unknown)
-    for doubted in Label.SIDE_BRANCH, Label.LEADER, Label.SUPPORT:
-        assert "under 0.85" in reasons(skeleton, likely=vouched(skeleton, doubted, 0.02)), doubted
+    assert "under 0.85" in reasons(skeleton, likely=vouched(skeleton, Label.SIDE_BRANCH, 0.02))
+    for doubted in Label.LEADER, Label.SUPPORT:
+        told = reasons(skeleton, likely=vouched(skeleton, doubted, 0.2))
+        assert "a branch on the way to it is likely wrong (20% sure)" in told, doubted
     thick = skeleton.with_radius(np.where(skeleton.label == Label.SIDE_BRANCH, 0.009, 0.01))
     assert "90% as thick as its leader: it may be one" in reasons(thick)
     assert "18 mm thick: it may be a leader" in reasons(thick)

@@ -29,6 +29,8 @@ def doubts_of(demand: Demand, evidence: Evidence, confidence: float, rules: CutR
         found.append("how likely its branch is right is not known")
     elif confidence < review.confidence:
         found.append(f"confidence {_floor(confidence):.2f}, under {review.confidence:g}")
+    if evidence.way < review.way:
+        found.append(f"a branch on the way to it is likely wrong ({evidence.way:.0%} sure)")
     if not math.isfinite(evidence.diameter):
         found.append("its diameter is not known")
     elif evidence.doubt > UNSURE * evidence.diameter:

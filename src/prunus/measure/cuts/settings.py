@@ -60,6 +60,7 @@ class Review(_Group):
     """When a person looks at a cut before it is made."""
 
     confidence: float = Field(ge=0, le=1)
+    way: float = Field(ge=0, le=1)
     behind: float = Field(ge=0, le=1)
     past: float = Field(ge=0)
     level: float = Field(ge=0, le=90)
