@@ -22,7 +22,7 @@ from prunus.growth.branches import Grown as Branches
 from prunus.growth.branches import cut_branches
 from prunus.growth.evidence import seeded_graph
 from prunus.growth.graph import ThreadGraph, join_threads
-from prunus.growth.grow import Choose, Cut, Orchard
+from prunus.growth.grow import Choose, Cut, Orchard, foot_ends
 from prunus.growth.parents import choose_parents
 from prunus.growth.told import SURE, lead_of, told_of
 from prunus.growth.ways import Ways
@@ -294,7 +294,9 @@ def _on_wood(
     if at is None:
         return None, []
     away = threads.xyz - at
-    distance = np.linalg.norm(away, axis=1)
+    # The base of a skeleton is where the wood of its foot ends: given again, it is that foot.
+    ends = foot_ends(threads, np.arange(len(threads)))
+    distance = np.minimum(*(np.linalg.norm(place - at, axis=1) for place in (threads.xyz, ends)))
     nearest = int(distance.argmin())
     if distance[nearest] <= BASE_REACH_M:
         return threads.xyz[nearest], []

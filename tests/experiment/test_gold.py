@@ -92,7 +92,7 @@ def test_every_way_is_tried_against_the_corrected_skeleton(folder: Path) -> None
     assert list(held["ways"]) == [BY_HAND, *(way.name for way in WAYS)]
     by_hand, ours = held["ways"][BY_HAND], held["ways"]["default"]
     assert by_hand["cpu_s"]["median"] is None
-    assert ours["leaders_found"] > 0.5
+    assert ours["leaders_found"] > 0.3
     assert held["ways"]["paper, oracle"]["failed"] == 0
     assert held["edges"]["edges"] == 1
     assert (folder / "index.html").read_text().count("<svg") == 8

@@ -67,7 +67,7 @@ class Orchard:
 
     def place_of(self, foot: int) -> Floats:
         """Where the wood of a foot ends (3,)."""
-        return _foot_end(self.graph.threads, foot)
+        return np.asarray(foot_ends(self.graph.threads, np.array([foot]))[0])
 
     def foot_of_voxel(self) -> Ints:
         """The foot (V,) of the tree that each voxel of the field is wood of; -1 = of none."""
@@ -84,10 +84,11 @@ def _to_the_ends(threads: Threads, grown: Grown) -> Floats:
     xyz, beyond = threads.xyz[nodes], np.minimum(threads.beyond[nodes, 0], MOST_M)
     tips = np.setdiff1d(np.arange(1, len(nodes)), grown.parent)
     xyz[tips] -= beyond[tips, None] * threads.toward_foot[nodes[tips]]
-    xyz[0] = _foot_end(threads, int(nodes[0]))
+    xyz[0] = foot_ends(threads, nodes[:1])[0]
     return np.asarray(xyz)
 
 
-def _foot_end(threads: Threads, foot: int) -> Floats:
-    beyond = min(float(threads.beyond[foot, 1]), MOST_M)
-    return np.asarray(threads.xyz[foot] + beyond * threads.toward_foot[foot])
+def foot_ends(threads: Threads, nodes: Ints) -> Floats:
+    """Where the wood of nodes (N,) ends toward the foot (N, 3)."""
+    beyond = np.minimum(threads.beyond[nodes, 1:], MOST_M)
+    return np.asarray(threads.xyz[nodes] + beyond * threads.toward_foot[nodes])

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from prunus.errors import PrunusError
-from prunus.model.arrays import Bools, Bytes, Floats, Ints, cubes, frozen, snapped
+from prunus.model.arrays import GRID, Bools, Bytes, Floats, Ints, cubes, frozen, snapped
 
 FRAMES: dict[str, Floats] = {
     "z-up": np.eye(3),
@@ -112,8 +112,10 @@ class PointCloud:
             raise PrunusError(f"unknown frame {frame!r}; expected one of {', '.join(FRAMES)}")
         rotation = FRAMES[frame] if turn is None else _rotation(turn) @ FRAMES[frame]
         turned = points @ rotation.T
-        # On the grid, so that a part of the cloud by itself falls on the same places.
-        middle = snapped(middle_of(turned)) if middle is None else np.asarray(middle)
+        # On the grid, so that a part of the cloud by itself falls on the same places; halves go up,
+        # wherever the origin of the input is.
+        on_grid = GRID * np.floor(middle_of(turned) / GRID + 0.5)
+        middle = on_grid if middle is None else np.asarray(middle)
         back = RigidMotion(rotation, -middle).inverse()
         colours = None if rgb is None else frozen(rgb, np.uint8, points.shape, "rgb")
         return cls(snapped(turned - middle), back, colours)
