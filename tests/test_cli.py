@@ -180,7 +180,6 @@ def test_a_folder_goes_on_past_a_bad_file_and_says_so(
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_two_jobs_do_the_same(scan: Path, quick: Path, tmp_path: Path) -> None:
     (tmp_path / "again.ply").write_bytes(scan.read_bytes())
     words = ["skeletonize", scan, tmp_path / "again.ply", "--params", quick, *FAST]

@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from prunus.errors import NoTreeError, PrunusError
 from prunus.field.network import see_field
-from prunus.field.votes import LEAST_WOOD, PointField, Threads, gather_votes
+from prunus.field.votes import PointField, Threads, gather_votes
 from prunus.field.voxels import Voxels, voxels_of
 from prunus.field.wires import without_wires
 from prunus.growth.branches import Grown as Branches
@@ -32,7 +32,6 @@ from prunus.model import (
     Ints,
     Kind,
     PointCloud,
-    Role,
     SeededGraph,
     Skeleton,
     Told,
@@ -123,8 +122,7 @@ class View:
     def _foot_of_points(self) -> Ints:
         """The foot (P,) of the tree that each point of the cloud is wood of; -1 = of none."""
         foot = self.orchard.foot_of_voxel()
-        wood = self.field.role[:, Role.NO_WOOD] < 1 - LEAST_WOOD
-        lone, owned = np.flatnonzero(wood & (foot < 0)), np.flatnonzero(foot >= 0)
+        lone, owned = np.flatnonzero(self.field.wood & (foot < 0)), np.flatnonzero(foot >= 0)
         voxel = self.voxels.xyz
         foot[lone] = _of_the_nearest(voxel[lone], voxel[owned], foot[owned])
         row = self.voxels.holding(self.cloud.xyz)

@@ -54,9 +54,7 @@ USUAL_RISE = 0.45
 the 22 that lie."""
 USUAL_FORM, USUAL_WOOD, UPRIGHT_RISE = 0.90, 0.90, 0.60
 """Where form or wood is less likely, or leaders rise less, it is looked whether the tree lies."""
-
-
-SURER = 0.015
+LYING_SURER = 0.015
 """A tree lies where it is so much surer in another frame (`upright.sureness`)."""
 
 
@@ -158,7 +156,7 @@ def lies(cloud: PointCloud) -> bool:
     if not frame:
         return False
     upright = sureness_in(cloud.to_input.apply(cloud.xyz), frame)
-    return upright > sureness_of(cloud) + SURER
+    return upright > sureness_of(cloud) + LYING_SURER
 
 
 def rise_of_leaders(skeleton: Skeleton) -> float:

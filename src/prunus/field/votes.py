@@ -42,6 +42,11 @@ class PointField:
     radius: Floats
     toward_foot: Floats
 
+    @property
+    def wood(self) -> Bools:
+        """Which voxels (V,) are wood."""
+        return np.asarray(1 - self.role[:, Role.NO_WOOD] >= LEAST_WOOD)
+
     def take(self, rows: Ints | Bools) -> PointField:
         """The field of these voxels only."""
         return PointField(
@@ -84,7 +89,7 @@ class Threads:
 
 def gather_votes(field: PointField) -> Threads:
     """The threads of a field; empty where nothing is wood."""
-    wood = np.flatnonzero(1 - field.role[:, Role.NO_WOOD] >= LEAST_WOOD)
+    wood = np.flatnonzero(field.wood)
     of_voxel, field = np.full(len(field.xyz), -1), field.take(wood)
     weight = np.sqrt(field.count)
     voted = _mean_shift(field.xyz + field.offset, field.toward_foot, weight)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from prunus.field.votes import LEAST_WOOD, PointField
+from prunus.field.votes import PointField
 from prunus.growth.feet import standing
 from prunus.growth.grow import Orchard
-from prunus.model import Bools, Floats, Role, Skeleton, Told
+from prunus.model import Bools, Floats, Skeleton, Told
 
 REACH_M = 0.03
 """A skeleton explains votes so near to it."""
@@ -49,7 +49,7 @@ def _whole(tree: Skeleton, orchard: Orchard, field: PointField) -> dict[str, flo
     return {
         "unclear": float(-(role * np.log(role + TINY)).sum() / max(len(role), 1)),
         "explained": _share(near),
-        "loose": _share(foot[_wood(field)] < 0),
+        "loose": _share(foot[field.wood] < 0),
         "astray": _astray(tree, orchard.graph.threads.toward_foot[tree.superpoint]),
     }
 
@@ -57,11 +57,7 @@ def _whole(tree: Skeleton, orchard: Orchard, field: PointField) -> dict[str, flo
 def _around(tree: Skeleton, scan: PointField) -> float:
     """The share of the voxels around a skeleton that are no wood."""
     away = cKDTree(tree.xyz).query(scan.xyz, distance_upper_bound=AROUND_M)[0]
-    return _share(~_wood(scan)[away < AROUND_M])
-
-
-def _wood(field: PointField) -> Bools:
-    return np.asarray(field.role[:, Role.NO_WOOD] < 1 - LEAST_WOOD)
+    return _share(~scan.wood[away < AROUND_M])
 
 
 def _astray(tree: Skeleton, toward_foot: Floats) -> float:
