@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import linear_sum_assignment
 
 from prunus.evaluate.along import asked_of, pieces_of
-from prunus.evaluate.by_length import LengthEdits, edits_by_length, geometry_f1
+from prunus.evaluate.by_length import LengthEdits, _paired, edits_by_length, geometry_f1
 from prunus.model import Label, RigidMotion, Skeleton
 from tests.drawn import TREE, tree
 from tests.evaluate.test_found import LEADER, LEFT, SUPPORT, TRUNK, grown, leader
@@ -203,3 +204,14 @@ def test_a_centimetre_more_or_less_between_nodes_does_not_change_the_length() ->
 def test_a_chain_along_the_bark_shows_at_two_centimetres(tolerance: float, f1: float) -> None:
     counts = np.ones(len(tree(TREE)), np.bool_)
     assert geometry_f1(moved(tree(), 0, 0.03), tree(), counts, tolerance) == f1
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_as_many_pieces_are_paired_as_can_be_and_each_once(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    near = rng.random((30, 25)) < 0.06
+    partner = _paired(np.stack(np.nonzero(near)), *near.shape)
+    paired = np.flatnonzero(partner >= 0)
+    assert near[paired, partner[paired]].all()
+    assert len(np.unique(partner[paired])) == len(paired)
+    assert len(paired) == near[linear_sum_assignment(near, maximize=True)].sum()

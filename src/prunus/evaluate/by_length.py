@@ -11,7 +11,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.csgraph import maximum_bipartite_matching
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import maximum_flow
 from scipy.spatial import cKDTree
 
 from prunus.evaluate.along import Pieces, asked_of, pieces_of
@@ -169,11 +170,22 @@ def _agree(ours: Pieces, theirs: Pieces, pairs: Ints) -> Bools:
 
 
 def _paired(pairs: Ints, ours: int, theirs: int) -> Ints:
-    """The partner (ours,) of each piece of ours when as many as can be have one; else -1."""
-    if pairs.shape[1] == 0:
-        return np.full(ours, NONE)
-    graph = matrix_of(pairs.T, np.ones(pairs.shape[1]), ours, theirs)
-    return np.asarray(maximum_bipartite_matching(graph, perm_type="column"), dtype=np.int64)
+    """The partner (ours,) of each piece of ours when as many as can be have one; else -1.
+
+    A maximum flow (Dinic's algorithm) from a source by way of ours, then theirs, to a sink. On
+    some trees scipy's own matching takes minutes for what this does in 50 ms.
+    """
+    source, sink = 0, ours + theirs + 1
+    one, other = 1 + pairs[0], 1 + ours + pairs[1]
+    mine, yours = np.arange(1, ours + 1), np.arange(ours + 1, sink)
+    start = np.concatenate([np.full(ours, source), one, yours])
+    end = np.concatenate([mine, other, np.full(theirs, sink)])
+    capacity = matrix_of(np.column_stack([start, end]), np.ones(len(start), np.int32), sink + 1)
+    used = coo_array(maximum_flow(capacity, source, sink).flow)
+    kept = (used.data > 0) & (used.row > source) & (used.row <= ours)
+    partner = np.full(ours, NONE)
+    partner[used.row[kept] - 1] = used.col[kept] - 1 - ours
+    return partner
 
 
 def _share(part: float, whole: float) -> float:

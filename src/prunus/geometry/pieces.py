@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
 from prunus.model.arrays import Floats, Ints
 
 
-def matrix_of(edges: Ints, values: Floats, rows: int, columns: int | None = None) -> csr_array:
-    """The matrix (R, C) with a value at each pair of (E, 2); square without `columns`."""
+def matrix_of(edges: Ints, values: NDArray[Any], size: int) -> csr_array:
+    """The matrix (N, N) of that size with a value at each pair of (E, 2)."""
     # scipy's algorithms on graphs took indices of 32 bits alone, before 1.15
     places = edges.T.astype(np.int32)
-    return csr_array((values, (places[0], places[1])), (rows, columns or rows))
+    return csr_array((values, (places[0], places[1])), (size, size))
 
 
 def components(nodes: int, edges: Ints) -> Ints:
