@@ -100,5 +100,5 @@ def seconds_of(result: Result) -> str:
         [name, f"{cpu * 1000:.0f}", f"{wall * 1000:.0f}"]
         for name, (cpu, wall) in [*stages, ("total", total)]
     ]
-    note = '<p class="quiet">The first tree of a run also loads the compiled kernels.</p>'
+    note = '<p class="quiet">The first tree of a run also loads what it calls.</p>'
     return "<h2>Time by stage</h2>" + html_table(["stage", "CPU [ms]", "wall [ms]"], rows) + note
