@@ -16,11 +16,12 @@ from pathlib import Path
 import numpy as np
 
 from bench.graphs import PARAMS, graph_of, row_graph, tree_scan
-from prunus.evaluate.curves import curve_measures
-from prunus.evaluate.found import branch_measures
 from prunus.geometry.near import within
-from prunus.io.clouds import write_cloud
-from prunus.kernels.neighbours import cover
+from prunus.geometry.neighbours import cover
+from prunus.io.clouds.cloud_file import write_cloud
+from prunus.lab.evaluate.curves import curve_measures
+from prunus.lab.evaluate.found import branch_measures
+from prunus.lab.simulate import simulate_scan
 from prunus.model import SeededGraph
 from prunus.paper.kernels.frames import edge_images
 from prunus.paper.networks import NetworkScorer
@@ -29,7 +30,6 @@ from prunus.paper.potential import path_priors
 from prunus.paper.score import graph_table
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
-from prunus.simulate import simulate_scan
 
 Row = tuple[str, float, str]
 RUNS = 7
@@ -108,7 +108,7 @@ def _file(points: int) -> Iterator[Row]:
     code = (
         "import sys, json\n"
         "from pathlib import Path\n"
-        "from prunus.batch import Options, Task, do\n"
+        "from prunus.commands.skeletonize import Options, Task, do\n"
         "path, base = Path(sys.argv[1]), tuple(json.loads(sys.argv[2]))\n"
         "task = Task(path, path.parent / 'out')\n"
         "options = Options(base, 'z-up', report=False)\n"

@@ -22,17 +22,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.refine import as_shown, thinned
-from prunus.experiment.orchard import Tree, tree_of
+from prunus.cuts import Cut, CutRules, Plan, plan_cuts, shipped_rules
+from prunus.cuts.limbs import Limb, Limbs
 from prunus.geometry.near import away_from
-from prunus.measure import shown
-from prunus.measure.cuts import Cut, CutRules, Plan, plan_cuts, shipped_rules
-from prunus.measure.cuts.limbs import Limb, Limbs
-from prunus.measure.refine import Refined, refined
+from prunus.lab.evaluate.seen import shown
+from prunus.lab.experiment.orchard import Tree, tree_of
+from prunus.lab.simulate.scan import simulate_scan
+from prunus.lab.simulate.settings import Setting
 from prunus.model import Floats, Label, Skeleton
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
-from prunus.simulate.scan import simulate_scan
-from prunus.simulate.settings import Setting
+from prunus.refine.refined import Refined, refined
 
 IN_PLACE = 0.015
 """A cut is in place so near to the true one along the branch, metres."""

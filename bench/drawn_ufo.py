@@ -10,12 +10,12 @@ import math
 import numpy as np
 from scipy.spatial import cKDTree
 
-from prunus.lab.simulate.surface import Surface, sample_pieces, seen_from
+from prunus.lab.simulate.habits import Range, ufo_habits
+from prunus.lab.simulate.row import NONE, Pieces, Row, wood_of
+from prunus.lab.simulate.scan import Scan
+from prunus.lab.simulate.wide.surface import Surface, sample_pieces, seen_from
+from prunus.lab.simulate.wood import STEP, UP, Wood
 from prunus.model import Bools, Floats, Ints, Kind, Label, Skeleton
-from prunus.simulate.habits import Range, ufo_habits
-from prunus.simulate.row import NONE, Pieces, Row, wood_of
-from prunus.simulate.scan import Scan
-from prunus.simulate.wood import STEP, UP, Wood
 
 POINTS = 50_000
 SUPPORT_M, LEADERS, SIDES = 1.2, 4, 5

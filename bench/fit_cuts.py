@@ -14,12 +14,12 @@ import argparse
 import numpy as np
 
 from bench.cuts import Judged, outcomes
-from prunus.io.safely import write_bytes
-from prunus.learn.logistic import fit_odds
-from prunus.measure.cuts import shipped_rules
-from prunus.measure.cuts.confidence import SHIPPED, features
+from prunus.cuts import shipped_rules
+from prunus.cuts.confidence import SHIPPED, features
+from prunus.files.safely import write_bytes
+from prunus.lab.learn.edges.logistic import fit_odds
+from prunus.lab.simulate.settings import Setting
 from prunus.model import Bools, Ints
-from prunus.simulate.settings import Setting
 
 OFF = 0.03
 """A cut that is farther off along its branch is not right here, metres."""

@@ -16,14 +16,14 @@ from pathlib import Path
 import numpy as np
 
 from bench.trust_cases import FORMS, KINDS, SETS, Tried, all_tried
-from prunus.io.safely import write_bytes
-from prunus.learn.logistic import fit_odds
-from prunus.measure import branches
-from prunus.measure.odds import Odds
-from prunus.measure.trust import Model, Parts
-from prunus.measure.trust.evidence import Evidence, of_branches, of_edges, of_tree
-from prunus.measure.trust.model import SHIPPED
+from prunus.files.safely import write_bytes
+from prunus.lab.learn.edges.logistic import fit_odds
 from prunus.model import Ints, Label
+from prunus.model.branches import branches
+from prunus.trust import Model, Parts
+from prunus.trust.evidence import Evidence, of_branches, of_edges, of_tree
+from prunus.trust.model import SHIPPED
+from prunus.trust.odds import Odds
 
 RIDGE = 10.0
 RIDGE_WHOLE = 1.0

@@ -15,11 +15,11 @@ from collections import Counter
 import numpy as np
 
 from bench.shapes import HABITS, scanned, with_floor
+from prunus.frames.orient import UPWARD
+from prunus.frames.stance import find_stance
+from prunus.lab.simulate.scan import simulate_scan
 from prunus.model import FRAMES, Floats, Kind
 from prunus.model.rotations import turned
-from prunus.sensing.orient import UPWARD
-from prunus.sensing.stance import find_stance
-from prunus.simulate.scan import simulate_scan
 
 ABOUT = (15.0, 8.0, 180.0)
 """Degrees about X (the row), Y (the line of sight) and Z, at most."""

@@ -16,12 +16,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from prunus.fusion.fuse import fuse, merged
+from prunus.fusion.views import seen
 from prunus.geometry.near import within
+from prunus.lab.simulate import Scan, simulate_scan
 from prunus.model import Camera, DepthView, Floats, Label, RigidMotion, RigView
 from prunus.model.rotations import turn_of, turned
-from prunus.sensing.fuse import fuse, merged
-from prunus.sensing.views import seen
-from prunus.simulate import Scan, simulate_scan
 
 MILLIMETRE = 1e-3
 

@@ -21,7 +21,7 @@ import numpy as np
 with atheris.instrument_imports(include=["prunus.io", "laspy", "rosbags", "zipfile"]):
     import prunus.io
     from prunus.errors import PrunusError
-    from prunus.io.clouds import _ply, _text, read_cloud
+    from prunus.io.clouds.cloud_file import _ply, _text, read_cloud
     from prunus.io.inputs import is_bag
 
 OURS = (IndexError, KeyError, TypeError, AttributeError, UnboundLocalError, RecursionError)

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 
+from prunus.lab.simulate import simulate_scan
 from prunus.model import (
     CandidateGraph,
     Floats,
@@ -23,7 +24,6 @@ from prunus.paper.networks import NetworkScorer
 from prunus.paper.seeds import find_seeds
 from prunus.paper.superpoints import find_superpoints
 from prunus.params import Parameters
-from prunus.simulate import simulate_scan
 
 PARAMS = Parameters.paper()
 SPACING = 1.2

@@ -17,9 +17,9 @@ import numpy as np
 
 from prunus import PointCloud, read_cloud, skeletonize
 from prunus.geometry.near import within
-from prunus.measure import branches
+from prunus.lab.simulate import simulate_scan
 from prunus.model import Bools, Floats, Label
-from prunus.simulate import simulate_scan
+from prunus.model.branches import branches
 
 PATCH = 0.10
 """Radius of a patch, metres."""

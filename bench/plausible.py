@@ -3,8 +3,8 @@
 The default chain on simulated scans, of which nothing was learned, and on drawn clouds of what is
 no tree (`bench.nontrees`). Of trees of the wide orchard the points of one alone, the whole scan,
 and that with a base by hand and nothing taken out; of our orchard the same, one laid on its side,
-and some with coordinates in steps. Printed are a line a cloud (what `prunus.plausible` and
-`prunus.sensing.diagnosis` go by), then quantiles of all numbers: the limits there are set by these.
+and some with coordinates in steps. Printed are a line a cloud (what `prunus.frames.plausible` and
+`prunus.frames.diagnosis` go by), then quantiles of all numbers: the limits there are set by these.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ import numpy as np
 
 from bench.nontrees import NO_TREES
 from prunus.errors import NoTreeError, PrunusError
-from prunus.lab.simulate.wide import simulate_wide
+from prunus.frames.diagnosis import linear_wood, spacing, spread
+from prunus.frames.plausible import Evidence
+from prunus.lab.simulate.scan import simulate_scan
+from prunus.lab.simulate.wide.scan import simulate_wide
 from prunus.model import Bools, Floats, Kind, PointCloud
 from prunus.pipeline import follow
-from prunus.plausible import Evidence
 from prunus.result import Result
-from prunus.sensing.diagnosis import linear_wood, spacing, spread
-from prunus.simulate.scan import simulate_scan
 
 SHOWN = 2000
 """A scan with fewer points of a tree does not show it."""

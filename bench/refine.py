@@ -19,17 +19,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from prunus.evaluate.compared import compared, one_to_one, overlap
-from prunus.evaluate.curves import sampled_rows
-from prunus.experiment.orchard import tree_of
 from prunus.geometry.near import nearest, within
-from prunus.measure import Branch, branches, shown
-from prunus.measure.refine import Refined, refined
+from prunus.lab.evaluate.compared import compared, one_to_one, overlap
+from prunus.lab.evaluate.curves import sampled_rows
+from prunus.lab.evaluate.seen import shown
+from prunus.lab.experiment.orchard import tree_of
+from prunus.lab.simulate.scan import Scan, simulate_scan
+from prunus.lab.simulate.settings import Setting, scan_settings
 from prunus.model import Bools, Floats, Label, PointCloud, Skeleton
+from prunus.model.branches import Branch, branches
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
-from prunus.simulate.scan import Scan, simulate_scan
-from prunus.simulate.settings import Setting, scan_settings
+from prunus.refine.refined import Refined, refined
 
 SPACING, ASTRAY, BEFORE = 0.08, 0.015, 0.010
 """Of the nodes of the true topology, metres."""

@@ -12,18 +12,18 @@ import numpy as np
 
 import prunus
 from bench.drawn_ufo import all_round, one_side
-from prunus.experiment.orchard import target_of
-from prunus.io.safely import write_bytes
-from prunus.lab.simulate.wide import simulate_wide
+from prunus.files.safely import write_bytes
+from prunus.lab.experiment.orchard import target_of
+from prunus.lab.simulate.scan import Scan, simulate_scan
+from prunus.lab.simulate.wide.scan import simulate_wide
 from prunus.model import Bools, Floats, Kind, Label, Skeleton
-from prunus.simulate.scan import Scan, simulate_scan
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
     """One cloud xyz (P, 3) and its truth; `target` (P,) are the points of the tree.
 
-    counts (M,): rows of the true tree that count, see `measure.counting_rows`; wires (W, 3): a
+    counts (M,): rows of the true tree that count, see `counting_rows`; wires (W, 3): a
     point every centimetre of them. A tree without leaders has no roles to tell: geometry alone.
     """
 

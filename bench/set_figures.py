@@ -10,11 +10,11 @@ from scipy.spatial import cKDTree
 
 from bench.set_cases import Case
 from bench.set_methods import Found
-from prunus.evaluate.along import pieces_of
-from prunus.evaluate.by_length import edits_by_length, geometry_f1
-from prunus.evaluate.curves import SPACING
-from prunus.evaluate.found import branch_measures
-from prunus.measure import shown
+from prunus.lab.evaluate.along import pieces_of
+from prunus.lab.evaluate.by_length import edits_by_length, geometry_f1
+from prunus.lab.evaluate.curves import SPACING
+from prunus.lab.evaluate.found import branch_measures
+from prunus.lab.evaluate.seen import shown
 from prunus.model import Skeleton
 
 ALONG_WIRE_M, ON_WOOD_M = 0.03, 0.06

@@ -16,9 +16,9 @@ from scipy.spatial import cKDTree
 
 from bench.set_figures import Figures, known
 from bench.set_methods import Found
-from prunus.evaluate.along import pieces_of
-from prunus.evaluate.curves import covered, sampled_lines
-from prunus.io.clouds import read_cloud
+from prunus.io.clouds.cloud_file import read_cloud
+from prunus.lab.evaluate.along import pieces_of
+from prunus.lab.evaluate.curves import covered, sampled_lines
 from prunus.model import Floats, Lines
 
 THICK_M = 0.02  # radius

@@ -5,8 +5,8 @@ trees that people measured, for testing only (`--measured FOLDER`, see `bench.se
 Methods are `default`, `paper`, `growth`, or any `module:function` that takes a `PointCloud` and a
 base or None. Cases are kept in the `--cache` folder; a rerun costs only the methods.
 
-A2 and geometry ratio: `prunus.evaluate.by_length`. Found branches are of those that the scan shows.
-Trees that are no UFO trees (in `any`) have no labels to tell: they count in the geometry alone.
+A2 and geometry ratio: `prunus.lab.evaluate.by_length`. Found branches are of those that
+the scan shows. Trees that are no UFO trees (in `any`) have no labels: geometry alone counts.
 """
 
 from __future__ import annotations

@@ -16,12 +16,12 @@ from pathlib import Path
 import numpy as np
 
 from bench.trust_cases import FORMS, HELD_OUT, KINDS, SETS, Tried, all_tried
-from prunus.learn.tables import calibration_error
-from prunus.measure import Branch, branches
-from prunus.measure.trust import WOOD, Trust, trust_in
-from prunus.measure.trust.review import FORM, MEANT, review_of, whole_review
+from prunus.frames.plausible import LEAST_WOOD
+from prunus.lab.learn.edges.tables import calibration_error
 from prunus.model import Bools, Floats, Label
-from prunus.plausible import LEAST_WOOD
+from prunus.model.branches import Branch, branches
+from prunus.trust import WOOD, Trust, trust_in
+from prunus.trust.review import FORM, MEANT, review_of, whole_review
 
 Pair = tuple[Tried, Trust]
 

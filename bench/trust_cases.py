@@ -19,12 +19,12 @@ from bench.nontrees import NO_TREES
 from bench.set_cases import Case, case_of
 from bench.shapes import HABITS, scanned
 from prunus.errors import PrunusError
-from prunus.evaluate.right import right_branches, right_edges, well_placed_branches
-from prunus.io.safely import write_bytes
-from prunus.measure.trust import Known
+from prunus.files.safely import write_bytes
+from prunus.lab.evaluate.right import right_branches, right_edges, well_placed_branches
 from prunus.model import Bools, Floats, PointCloud
 from prunus.pipeline import follow
 from prunus.result import Result
+from prunus.trust import Known
 
 SETS = {"ordinary": 510_000, "hard": 500_000, "hard_raw": 500_000, "clean": 520_000,
         "any": 2_500_000, "any_raw": 2_500_000}  # fmt: skip

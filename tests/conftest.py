@@ -8,8 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+from prunus.editing import State
+from prunus.frames.scan import open_scan
+from prunus.io.clouds.cloud_file import write_cloud
+from prunus.lab.simulate import Scan, simulate_scan
 from prunus.model import PointCloud, Skeleton
-from prunus.simulate import Scan, simulate_scan
+from prunus.pipeline import skeletonize
+from tests.editing.trees import FAR
 
 # A check that fails for one and passes for the next helps nobody: CI always draws the same.
 settings.register_profile("ci", derandomize=True, deadline=None)
@@ -47,3 +52,18 @@ def real_scan() -> Path:
     if not REAL.exists():
         pytest.skip("the real scan lies in ../shared, which is absent here")
     return REAL
+
+
+@pytest.fixture(scope="session")
+def scan_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A clean scan of a simulated tree, far from the origin."""
+    path = tmp_path_factory.mktemp("scans") / "clean.ply"
+    cloud = simulate_scan(4, "clean").target_cloud().sample(5000, np.random.default_rng(0))
+    write_cloud(path, cloud.to_input.apply(cloud.xyz) + FAR)
+    return path
+
+
+@pytest.fixture(scope="session")
+def machine(scan_file: Path) -> State:
+    """What the machine finds in it."""
+    return State.of(skeletonize(open_scan(scan_file, "z-up").cloud))

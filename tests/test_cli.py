@@ -14,13 +14,13 @@ from typer.testing import CliRunner, Result
 
 import prunus as prunus_package
 from prunus.cli import app
-from prunus.io.clouds import read_cloud, write_cloud
+from prunus.io.clouds.cloud_file import read_cloud, write_cloud
 from prunus.io.ply import read_ply
-from prunus.io.skeletons import read_record, read_skeleton, write_skeleton
+from prunus.io.skeletons.skeleton_file import read_record, read_skeleton, write_skeleton
+from prunus.lab.simulate.orchard import simulate_tree
 from prunus.params import Parameters
 from prunus.rules import offenders
 from prunus.schemas import schema
-from prunus.simulate.orchard import simulate_tree
 from tests.conftest import simulated
 from tests.drawn import tree
 from tests.recordings import Recording
@@ -296,7 +296,7 @@ def test_a_full_disk_leaves_nothing_half_written(
         raise OSError(errno.ENOSPC, "No space left on device")
 
     out = tmp_path / "out"
-    monkeypatch.setattr("prunus.io.safely.os.fdopen", full)
+    monkeypatch.setattr("prunus.files.safely.os.fdopen", full)
     done = prunus("skeletonize", scan, "-o", out, "--params", quick, *FAST)
     assert done.exit_code == 1
     assert "cannot be written (No space left on device)" in done.stderr
@@ -320,7 +320,7 @@ def test_the_demo_shows_what_was_found(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("ending", [".swc", ".ply", ".graphml", ".json"])
 def test_skeletons_convert(tmp_path: Path, ending: str) -> None:
-    from prunus.io.skeletons import write_skeleton
+    from prunus.io.skeletons.skeleton_file import write_skeleton
     from tests.drawn import tree
 
     write_skeleton(tmp_path / "s.json", tree(), score=2.5)
@@ -338,7 +338,7 @@ ENDINGS = [
 
 @pytest.mark.parametrize("ending", ENDINGS)
 def test_skeletons_convert_to_wood_and_what_is_lost_is_said(tmp_path: Path, ending: str) -> None:
-    from prunus.io.skeletons import write_skeleton
+    from prunus.io.skeletons.skeleton_file import write_skeleton
     from tests.drawn import tree
 
     drawn = replace(tree(), superpoint=np.arange(len(tree())))
@@ -359,7 +359,7 @@ def test_skeletons_convert_to_wood_and_what_is_lost_is_said(tmp_path: Path, endi
 
 
 def test_a_cloud_goes_into_a_bag_and_into_nothing_else(scan: Path, tmp_path: Path) -> None:
-    from prunus.io.skeletons import write_skeleton
+    from prunus.io.skeletons.skeleton_file import write_skeleton
     from tests.drawn import tree
 
     write_skeleton(tmp_path / "s.json", tree())

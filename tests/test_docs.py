@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from prunus.io.clouds import write_cloud
+from prunus.io.clouds.cloud_file import write_cloud
 from tests.conftest import simulated
 
 ROOT = Path(__file__).resolve().parents[1]

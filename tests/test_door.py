@@ -17,8 +17,8 @@ from hypothesis.extra import numpy as arrays
 
 import prunus
 from prunus import Parameters, PointCloud, PrunusError, Skeleton, search_graph, skeletonize
-from prunus.measure import branches
 from prunus.model import CandidateGraph, RigidMotion
+from prunus.model.branches import branches
 from prunus.paper.confidence import ConstantScorer
 from prunus.pipeline import follow
 from tests.conftest import simulated

@@ -12,7 +12,7 @@ import typer.main
 from typer.testing import CliRunner
 
 from prunus.cli import app
-from prunus.measure.cuts import CutRules, shipped_rules
+from prunus.cuts import CutRules, shipped_rules
 from prunus.params import Parameters
 from tests.test_cli import prunus
 

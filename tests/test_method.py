@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from prunus.errors import PrunusError
-from prunus.experiment.orchard import Tree, tree_of
-from prunus.experiment.trial import ABLATIONS, WAYS, Way
-from prunus.grown import Growth, Votes
+from prunus.growth.chain import Growth, Votes
 from prunus.growth.parents import choose_parents
+from prunus.lab.experiment.orchard import Tree, tree_of
+from prunus.lab.experiment.trial import ABLATIONS, WAYS, Way
 from prunus.method import Method
 from prunus.model import Skeleton
 from prunus.paper.chain import ScoredEdges, Search

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from prunus.io.clouds import write_cloud
+from prunus.io.clouds.cloud_file import write_cloud
 from tests.growth.drawn import TEXTBOOK, surface_of
 
 CHAIN = """

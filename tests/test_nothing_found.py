@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from prunus.cli import app
-from prunus.io.skeletons import write_skeleton
+from prunus.io.skeletons.skeleton_file import write_skeleton
 from prunus.model import RigidMotion, Skeleton
 from tests.conftest import simulated
 from tests.drawn import tree

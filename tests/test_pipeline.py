@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from prunus.errors import PrunusError
-from prunus.evaluate.curves import curve_measures
-from prunus.intake import open_scan
-from prunus.measure import branches, leaders
+from prunus.frames.scan import open_scan
+from prunus.lab.evaluate.curves import curve_measures
 from prunus.model import Label, PointCloud, Skeleton
+from prunus.model.branches import branches
+from prunus.model.leaders import leaders
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 

@@ -9,7 +9,7 @@ from jsonschema.validators import Draft202012Validator
 
 import prunus as package
 from prunus.errors import PrunusError, Status
-from prunus.io.skeletons import write_skeleton
+from prunus.io.skeletons.skeleton_file import write_skeleton
 from prunus.schemas import ABOUT, HOME, schema, text_of
 from prunus.schemas.make import made
 from tests.drawn import tree

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from prunus.errors import OptionError, PrunusError, Status, blaming_the_command
-from prunus.io.clouds import write_cloud
-from prunus.io.skeletons import write_skeleton
+from prunus.io.clouds.cloud_file import write_cloud
+from prunus.io.skeletons.skeleton_file import write_skeleton
 from tests.drawn import tree
 from tests.test_cli import prunus
 

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from prunus.errors import PrunusError as PrunusError
-    from prunus.intake import read_cloud as read_cloud
-    from prunus.io.skeletons import read_skeleton as read_skeleton
-    from prunus.io.skeletons import write_skeleton as write_skeleton
+    from prunus.frames.scan import read_cloud as read_cloud
+    from prunus.io.skeletons.skeleton_file import read_skeleton as read_skeleton
+    from prunus.io.skeletons.skeleton_file import write_skeleton as write_skeleton
     from prunus.method import Method as Method
     from prunus.model import Label as Label
     from prunus.model import PointCloud as PointCloud
@@ -39,12 +39,12 @@ _HOME = {
     "PrunusError": "prunus.errors",
     "Result": "prunus.result",
     "Skeleton": "prunus.model",
-    "read_cloud": "prunus.intake",
-    "read_skeleton": "prunus.io.skeletons",
+    "read_cloud": "prunus.frames.scan",
+    "read_skeleton": "prunus.io.skeletons.skeleton_file",
     "schema": "prunus.schemas",
     "search_graph": "prunus.paper.graphs",
     "skeletonize": "prunus.pipeline",
-    "write_skeleton": "prunus.io.skeletons",
+    "write_skeleton": "prunus.io.skeletons.skeleton_file",
 }
 
 __all__ = [*sorted(_HOME)]  # noqa: PLE0604, the names are strings

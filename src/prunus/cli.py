@@ -12,13 +12,13 @@ import typer
 from typer.core import TyperGroup
 
 from prunus import __version__
-from prunus.ending import end_on_signals
 from prunus.errors import OptionError, PrunusError, Status, blaming_the_command, describe
+from prunus.processes.ending import end_on_signals
 
 if TYPE_CHECKING:
+    from prunus.commands.progress import Waiting
     from prunus.paper.networks import NetworkScorer
     from prunus.params import Parameters
-    from prunus.progress import Waiting
 
 
 class Prunus(TyperGroup):
@@ -167,7 +167,7 @@ def _prunus(
     ] = False,
 ) -> None:
     """Have every command told of while it is waited for."""
-    from prunus.progress import Waiting
+    from prunus.commands.progress import Waiting
 
     ctx.obj = ctx.with_resource(Waiting())
 
@@ -210,7 +210,7 @@ def skeletonize(
 
     For a script: `prunus skeletonize scans/ --jobs 4 --json > trees.jsonl`
     """
-    from prunus.batch import Options, plan
+    from prunus.commands.skeletonize import Options, plan
 
     options = Options(
         base, frame.value, unit and unit.value, _parameters(params, points, no_isolate), seed,
@@ -251,7 +251,7 @@ def isolate(
         raise OptionError("nowhere to write to: say -o TREE.ply, or --list")
     if base is not None and (every or list_):
         raise OptionError("--at: of one tree; expected neither --all nor --list beside it")
-    from prunus.isolation import Opened, check_output, list_trees, write_all, write_tree
+    from prunus.commands.isolate import Opened, check_output, list_trees, write_all, write_tree
 
     if output is not None:
         check_output(output, classes)
@@ -298,9 +298,9 @@ def cuts(
 
     docs/cuts.md has the rules. A cut with a `look:` is for a person to look at before it is made.
     """
-    from prunus.cutting import Source, cut_file, lines_of
-    from prunus.io.plans import write_plan
-    from prunus.measure.cuts import CutRules, shipped_rules
+    from prunus.cuts import CutRules, shipped_rules
+    from prunus.cuts.plan_file import Source, cut_file, lines_of
+    from prunus.io.skeletons.plans import write_plan
 
     waiting: Waiting = ctx.obj
     wanted = Source(
@@ -345,7 +345,7 @@ def convert(
 
     A cloud for another tool: `prunus convert tree.laz tree.xyz`
     """
-    from prunus.convert import convert_file
+    from prunus.commands.convert import convert_file
 
     waiting: Waiting = ctx.obj
     waiting.doing(f"converting {source}")
@@ -371,7 +371,7 @@ def fuse(
 
     Its views: `prunus fuse rig/tree_000000 -o raw.ply`
     """
-    from prunus.fusing import fuse_folder, lines_of
+    from prunus.commands.fuse import fuse_folder, lines_of
 
     waiting: Waiting = ctx.obj
     waiting.doing(f"fusing the views in {rig}")
@@ -410,7 +410,7 @@ def studio(
     """
     waiting: Waiting = ctx.obj
     waiting.doing(f"opening {path}")
-    from prunus.corrections import Settings
+    from prunus.session import Settings
     from prunus.studio.start import open_studio
 
     settings = Settings(
@@ -433,8 +433,8 @@ def demo(
 
     Another seed, another tree: `prunus demo --seed 7`
     """
-    from prunus.batch import Options, Task
-    from prunus.demo import compare, simulated_scan
+    from prunus.commands.demo import compare, simulated_scan
+    from prunus.commands.skeletonize import Options, Task
 
     waiting: Waiting = ctx.obj
     waiting.doing("growing and scanning a tree")
@@ -463,9 +463,9 @@ def simulate(
     """
     from functools import partial
 
-    from prunus.lab.simulate.wide import simulate_wide
-    from prunus.simulate import simulate_scan
-    from prunus.simulate.orchard import simulate_orchard
+    from prunus.lab.simulate import simulate_scan
+    from prunus.lab.simulate.orchard import simulate_orchard
+    from prunus.lab.simulate.wide.scan import simulate_wide
 
     if views and scan == ScanKind.ANY:
         raise OptionError("--views: only of the rig; expected --scan ordinary, hard or clean")
@@ -529,7 +529,7 @@ def train(
     if not folders:
         raise OptionError("no folder to learn from: expected simulated scans, or the studio's")
     waiting.doing("loading torch", at_once=True)
-    from prunus.learn.school import Course, lines_of, school
+    from prunus.lab.learn.edges.school import Course, lines_of, school
 
     course = Course(start, seed, epochs, scans)
     waiting.tell(lines_of(school(folders, output, course, jobs, waiting.watch)))
@@ -545,16 +545,16 @@ def _field_trained(
     jobs: int,
 ) -> list[str]:
     """Train the network of the point field; what to say of it."""
-    from prunus.lab.learn.field_recipe import recipe_of
+    from prunus.lab.learn.field.recipe import recipe_of
 
     with blaming_the_command():
         settings = recipe_of(recipe)
     waiting.doing("loading torch", at_once=True)
     try:
-        from prunus.lab.learn.field_school import FieldCourse, field_school
+        from prunus.lab.learn.field.school import FieldCourse, field_school
     except ImportError as error:
         raise OptionError("training needs torch and onnx: pip install 'prunus[train]'") from error
-    from prunus.experiment.gold import corrected_in
+    from prunus.lab.experiment.gold import corrected_in
 
     corrected = []
     for folder in folders:
@@ -586,9 +586,9 @@ def evaluate(
     """
     from json import dumps
 
-    from prunus.io.safely import write_bytes
+    from prunus.commands.evaluate import compare, pairs_in, spread_lines, strangers
+    from prunus.files.safely import write_bytes
     from prunus.io.tables import csv_bytes
-    from prunus.judge import compare, pairs_in, spread_lines, strangers
 
     waiting: Waiting = ctx.obj
     pairs = pairs_in(skeleton, gold)
@@ -633,7 +633,7 @@ def experiment(
 
     On trees corrected in the studio: `prunus experiment --gold prunus-studio -o out`
     """
-    from prunus.experiment.results import Orchard, experiment, lines_of
+    from prunus.lab.experiment.results import Orchard, experiment, lines_of
 
     waiting: Waiting = ctx.obj
     with blaming_the_command():
@@ -651,7 +651,7 @@ def rules(ctx: typer.Context) -> None:
 
     To change them: `prunus rules > mine.toml`
     """
-    from prunus.measure.cuts.settings import SHIPPED as FILE
+    from prunus.cuts.settings import SHIPPED as FILE
 
     ctx.obj.tell(FILE.read_text(encoding="utf-8").splitlines())
 
@@ -738,8 +738,8 @@ def _report(
     waiting: Waiting, tasks: list[Any], failed: list[Any], options: Any, as_json: bool, jobs: int
 ) -> None:
     """Run the tasks, say what came of each, and exit with 1 if any failed."""
-    from prunus.batch import run
-    from prunus.progress import Teller
+    from prunus.commands.progress import Teller
+    from prunus.commands.skeletonize import run
 
     teller = Teller(waiting, as_json)
     for record in failed:

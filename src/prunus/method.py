@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 class SeesEvidence(Protocol):
     """What is to be known of a cloud before a tree is made of it, and where that stands.
 
-    Votes and threads (`grown.Votes`), or superpoints and scored edges (`paper.chain.ScoredEdges`).
+    `growth.chain.Votes` (votes, threads), or `paper.chain.ScoredEdges` (superpoints, edges).
     """
 
     def __call__(
@@ -41,7 +41,7 @@ class SeesEvidence(Protocol):
 
 
 class MakesTree(Protocol):
-    """The labelled tree of that evidence: `grown.Growth`, or `paper.chain.Search`."""
+    """The labelled tree of that evidence: `growth.chain.Growth`, or `paper.chain.Search`."""
 
     def __call__(
         self, evidence: Any, params: Parameters, rng: np.random.Generator, seconds: Seconds, /
@@ -62,7 +62,7 @@ class Method:
     @classmethod
     def default(cls) -> Method:
         """Vote for the axis, then grow the tree (docs/growth.md)."""
-        from prunus.grown import Growth, Votes
+        from prunus.growth.chain import Growth, Votes
 
         return cls(evidence=Votes(), tree=Growth())
 

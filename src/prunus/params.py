@@ -22,7 +22,7 @@ from pydantic import (
 )
 
 from prunus.errors import PrunusError
-from prunus.reading import in_words, read_toml
+from prunus.files.reading import in_words, read_toml
 
 PI = math.pi
 MethodName = Literal["default", "paper"]

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from prunus.errors import NoTreeError, PrunusError
+from prunus.frames.diagnosis import explaining
+from prunus.frames.plausible import Evidence
 from prunus.method import Method
 from prunus.model import Floats, PointCloud
 from prunus.model.arrays import frozen
 from prunus.params import Parameters, checked_params, checked_seed
-from prunus.plausible import Evidence
 from prunus.result import Result, Seconds
-from prunus.sensing.diagnosis import explaining
 
 if TYPE_CHECKING:
     from prunus.paper.confidence import EdgeScorer

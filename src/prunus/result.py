@@ -10,13 +10,13 @@ from functools import cached_property
 
 import numpy as np
 
-from prunus.measure import branches
-from prunus.measure.refine import Refined, refined
-from prunus.measure.trust import Known, Trust, trust_in
-from prunus.measure.trust.review import review_of
 from prunus.model import Floats, Label, PointCloud, SeededGraph, Skeleton, Told
+from prunus.model.branches import branches
+from prunus.model.isolated import Isolated
 from prunus.params import Parameters
-from prunus.sensing.isolated import Isolated
+from prunus.refine.refined import Refined, refined
+from prunus.trust import Known, Trust, trust_in
+from prunus.trust.review import review_of
 
 REFINED_WITH = 150_000
 """So many points of the tree, drawn at random, are enough to refine its skeleton."""

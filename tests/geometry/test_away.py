@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from prunus.geometry.near import away_from
-from prunus.kernels import reference
+from tests import reference
 
 
 @settings(deadline=None, max_examples=30)

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from prunus.geometry.near import nearest, within
-from prunus.kernels import reference
+from tests import reference
 from tests.drawn import clouds
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from prunus.growth.feet import find_feet
 from prunus.growth.graph import join_threads
-from prunus.measure import branches
 from prunus.model import Floats, Label, RigidMotion, Role, Skeleton
+from prunus.model.branches import branches
 from prunus.model.rotations import turned
 from prunus.rules import offenders
 from tests.growth.drawn import TEXTBOOK, Piece, grow, threads_of

@@ -15,14 +15,14 @@ import numpy as np
 import pytest
 import trimesh
 
-from prunus.io.dxf import COLOURS as NUMBERS
-from prunus.io.dxf import write_dxf
-from prunus.io.export import COLOURS, write_graphml, write_ply
-from prunus.io.swc import write_swc
-from prunus.measure.branches import branches
+from prunus.io.skeletons.dxf import COLOURS as NUMBERS
+from prunus.io.skeletons.dxf import write_dxf
+from prunus.io.skeletons.export import COLOURS, write_graphml, write_ply
+from prunus.io.skeletons.swc import write_swc
 from prunus.model import Label, Skeleton
+from prunus.model.branches import branches
 from tests.drawn import tree
-from tests.io.test_skeletons import random_skeleton
+from tests.io.skeletons.test_skeletons import random_skeleton
 
 FAR = np.array([500_000.25, 4_649_776.125, 100.0])
 PLACES = [np.zeros(3), FAR]

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from prunus.errors import PrunusError
+from prunus.files.safely import digest_of
 from prunus.io.original import original_of
-from prunus.io.safely import digest_of
-from prunus.io.skeletons import InputRecord
+from prunus.io.skeletons.skeleton_file import InputRecord
 
 
 def record(path: Path) -> InputRecord:

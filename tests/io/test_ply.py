@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from prunus.errors import PrunusError
-from prunus.io.clouds import read_cloud
+from prunus.io.clouds.cloud_file import read_cloud
 from prunus.io.ply import read_ply
 
 XYZ = np.round(np.random.default_rng(3).uniform(0, 1, (6, 3)), 3)

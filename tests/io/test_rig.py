@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from prunus.errors import PrunusError
-from prunus.io.clouds import write_cloud
+from prunus.io.clouds.cloud_file import write_cloud
 from prunus.io.rig import read_rig
+from prunus.lab.simulate.orchard import write_simulated
 from prunus.model import CloudView, DepthView
-from prunus.simulate.orchard import write_simulated
 from tests.conftest import field_scan
 
 TURN = [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from prunus.evaluate.curves import curve_measures
+from prunus.lab.evaluate.curves import curve_measures
 from prunus.model import Floats, PointCloud, Skeleton
 from prunus.paper.score import skel_score
 from prunus.params import Parameters

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from prunus.kernels.reference import Edge, Orchard, Pairs
 from prunus.model import (
     CandidateGraph,
     Label,
@@ -17,6 +16,7 @@ from prunus.model import (
 from prunus.paper.kernels.angles import grow_angle, turn_angle
 from prunus.params import Parameters
 from prunus.rules import offenders
+from tests.reference import Edge, Orchard, Pairs
 
 
 def random_graph(

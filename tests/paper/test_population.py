@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from prunus.kernels.reference import Orchard, Pairs
 from prunus.model import CandidateGraph, ScoredGraph, SeededGraph
 from prunus.paper.eligible import grammar_table
 from prunus.paper.kernels.propose import eligible_pairs, live_tips, propose
@@ -17,6 +16,7 @@ from prunus.paper.potential import path_priors
 from prunus.paper.score import graph_table, skel_score
 from prunus.params import Parameters
 from tests.paper.graphs import as_pairs, orchard, random_graph
+from tests.reference import Orchard, Pairs
 
 PARAMS = Parameters.paper()
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from prunus.measure import branches
-from prunus.measure.cuts import Plan, plan_cuts
+from prunus.cuts import Plan, plan_cuts
+from prunus.model.branches import branches
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
 from prunus.report import report_page

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from prunus.corrections import Settings
-from prunus.io.clouds import write_cloud
+from prunus.io.clouds.cloud_file import write_cloud
+from prunus.lab.simulate import simulate_scan
 from prunus.model import Floats, Label
-from prunus.simulate import simulate_scan
+from prunus.session import Settings
 from prunus.studio.camera import FOV, Eye, standing
 from prunus.studio.picking import Ray, nearest_edge
 

@@ -12,18 +12,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from prunus.corrections import AddPath, Settings
-from prunus.io.plans import read_plan
-from prunus.io.skeletons import read_skeleton
+from prunus.editing import AddPath
+from prunus.io.skeletons.plans import read_plan
+from prunus.io.skeletons.skeleton_file import read_skeleton
 from prunus.model import Label
 from prunus.params import Parameters
+from prunus.session import Settings
 from prunus.studio.modes import cuts
 from prunus.studio.modes.correct import REACHES
 from prunus.studio.modes.mode import put
 from prunus.studio.planned import planned
 from prunus.studio.shelf import Item
 from prunus.studio.tree import Tree
-from tests.children import prunus
+from tests.processes.children import prunus
 from tests.studio.conftest import Remote, Visit, new_page, soon, until
 
 Opened = Callable[..., Visit]

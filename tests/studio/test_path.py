@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from prunus.corrections import AddPath, Draft, State
-from prunus.corrections.steps import stepped
+from prunus.editing import AddPath, Draft, State
+from prunus.editing.steps import stepped
 from prunus.model import Label
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize

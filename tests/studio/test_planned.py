@@ -7,20 +7,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from prunus.corrections import AddPath, Relabel, RemoveBranch, Settings, State, Work, branch_names
+from prunus.editing import AddPath, Relabel, RemoveBranch, State, branch_names
 from prunus.errors import PrunusError
 from prunus.geometry.near import away_from
-from prunus.io.clouds import write_cloud
-from prunus.io.plans import read_plan, write_plan
-from prunus.io.skeletons import read_skeleton, sha256_of
+from prunus.io.clouds.cloud_file import write_cloud
+from prunus.io.skeletons.plans import read_plan, write_plan
+from prunus.io.skeletons.skeleton_file import read_skeleton, sha256_of
+from prunus.lab.simulate import simulate_scan
 from prunus.model import Label
 from prunus.pipeline import skeletonize
-from prunus.simulate import simulate_scan
+from prunus.session import Settings, Work
 from prunus.studio.planned import PLAN, _vouched, file_of, planned, save, told_of_file
 from prunus.studio.shelf import Item
 from prunus.studio.tree import Tree
 from tests.conftest import simulated
-from tests.corrections.trees import FAR
+from tests.editing.trees import FAR
 from tests.studio.conftest import until
 
 QUICK = Settings(frame="z-up")

@@ -3,12 +3,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from prunus.corrections import Brush, Mark, PickBase, Rebuild, Settings, Work
+from prunus.editing import Brush, Mark, PickBase, Rebuild
 from prunus.errors import PrunusError
 from prunus.io.labels import LabelHead, read_labels
-from prunus.learn.labelled import labelled_graphs
-from prunus.model import CandidateGraph, Kind, PointCloud, RigidMotion, ScoredGraph, Superpoints
+from prunus.lab.learn.edges.labelled import labelled_graphs
+from prunus.model import (
+    CandidateGraph,
+    Kind,
+    PointCloud,
+    RigidMotion,
+    ScoredGraph,
+    Superpoints,
+)
 from prunus.params import Parameters
+from prunus.session import Settings, Work
 from prunus.studio.modes.label import queue_of
 from prunus.studio.queue import Queue
 

@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from prunus.errors import PrunusError
-from prunus.io.skeletons import write_skeleton
+from prunus.io.skeletons.skeleton_file import write_skeleton
 from prunus.studio.shelf import items_in
 from tests.drawn import tree
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from prunus.corrections import Settings
 from prunus.errors import PrunusError
+from prunus.session import Settings
 from prunus.studio.start import has_display, open_studio
-from tests.children import child, prunus
+from tests.processes.children import child, prunus
 
 
 def test_without_viser_the_command_says_what_to_install(tmp_path: Path) -> None:

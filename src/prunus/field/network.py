@@ -10,7 +10,7 @@ import numpy as np
 from prunus.field.votes import PointField
 from prunus.field.voxels import LEVELS, Voxels
 from prunus.model import Floats, Role
-from prunus.networks import WEIGHTS, open_network
+from prunus.weights import WEIGHTS, open_network
 
 SHIPPED = WEIGHTS / "field.onnx"
 OFFSET_M = 0.03

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from prunus.io.safely import parsing, read_bytes, write_bytes
+from prunus.files.safely import parsing, read_bytes, write_bytes
 from prunus.model import Floats, Ints
 
 LARGEST = 2**30

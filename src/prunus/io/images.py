@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from prunus.errors import PrunusError
-from prunus.io.numpyfiles import npy_array
-from prunus.io.safely import parsing, read_bytes
+from prunus.files.safely import parsing, read_bytes
+from prunus.io.clouds.numpyfiles import npy_array
 from prunus.model import Bools, Floats
 from prunus.model.arrays import Bytes
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from prunus.errors import PrunusError
-from prunus.io.readers import READERS
-from prunus.io.text import may_be_cloud
-from prunus.reading import read_bytes
+from prunus.files.reading import read_bytes
+from prunus.io.clouds.readers import READERS
+from prunus.io.clouds.text import may_be_cloud
 
 BAGS = (".bag", ".mcap", ".db3")
 """Endings of recordings: ROS 1, and the two stores of ROS 2."""

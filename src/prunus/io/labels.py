@@ -15,10 +15,10 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from prunus.errors import PrunusError
-from prunus.io.jsonl import append_line, read_lines_of
-from prunus.io.skeletons import InputRecord, Point
-from prunus.io.units import Unit
-from prunus.reading import read_bytes, record_of
+from prunus.files.jsonl import append_line, read_lines_of
+from prunus.files.reading import read_bytes, record_of
+from prunus.io.clouds.units import Unit
+from prunus.io.skeletons.skeleton_file import InputRecord, Point
 
 Category = Literal["trunk", "support", "leader", "side_branch", "other"]
 CATEGORIES: tuple[Category, ...] = ("trunk", "support", "leader", "side_branch", "other")

@@ -8,9 +8,9 @@ from glob import escape
 from pathlib import Path
 
 from prunus.errors import PrunusError
+from prunus.files.safely import digest_of
 from prunus.io.inputs import source_of
-from prunus.io.safely import digest_of
-from prunus.io.skeletons import InputRecord
+from prunus.io.skeletons.skeleton_file import InputRecord
 from prunus.names import as_text
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from prunus.errors import PrunusError
-from prunus.io.safely import BYTE_ORDER_MARK
+from prunus.files.safely import BYTE_ORDER_MARK
 from prunus.model.arrays import Floats
 
 Table = NDArray[Any]

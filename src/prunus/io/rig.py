@@ -12,11 +12,11 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from prunus.errors import PrunusError
-from prunus.io.clouds import read_cloud
+from prunus.files.reading import record_in
+from prunus.io.clouds.cloud_file import read_cloud
 from prunus.io.images import read_colour, read_depth, read_mask
 from prunus.model import Camera, CloudView, DepthView, Floats, RigidMotion, RigView
 from prunus.names import as_text
-from prunus.reading import record_in
 
 Row = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 Positive = Annotated[FiniteFloat, Field(gt=0)]

@@ -97,7 +97,7 @@ class PointCloud:
 
         Axes are turned as the name says and no further: nothing is levelled, and no row is looked
         for, as `prunus.read_cloud` does. `turn` (3, 3) is a further rotation, from there to the
-        house frame; `prunus.sensing.stance.find_stance` finds one. `middle` (3,), where in that the
+        house frame; `prunus.frames.stance.find_stance` finds one. `middle` (3,), where in that the
         origin of the house frame is: the middle of the points, where it is not told.
 
         The points are turned into the house frame and shifted to a local origin in double

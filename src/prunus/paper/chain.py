@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from prunus.grown import isolated_tree
-from prunus.measure import remarks
+from prunus.growth.chain import isolated_tree
 from prunus.model import Floats, PointCloud, ScoredGraph, SeededGraph, Skeleton, Superpoints
+from prunus.model.isolated import Isolated
+from prunus.model.remarks import remarks
 from prunus.paper.candidates import find_candidates
 from prunus.paper.confidence import EdgeScorer, check_scorer, score_edges
 from prunus.paper.found import SearchResult
@@ -22,7 +23,6 @@ from prunus.paper.superpoints import find_superpoints
 from prunus.paper.trunks import FOOT_REACH_M, find_foot, on_wood
 from prunus.params import Cover, Parameters
 from prunus.result import Found, Seconds, timed
-from prunus.sensing.isolated import Isolated
 
 Isolate = Callable[
     [PointCloud, Floats | None, Parameters, np.random.Generator, Seconds], Isolated | None

@@ -9,8 +9,8 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.model import CandidateGraph, Floats
-from prunus.networks import WEIGHTS, open_network
 from prunus.paper.images import description, edge_images
+from prunus.weights import WEIGHTS, open_network
 
 SHIPPED = WEIGHTS / "paper.onnx"
 """The network that the package ships, made by `prunus train`."""

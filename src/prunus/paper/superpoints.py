@@ -9,7 +9,7 @@ import numpy as np
 
 from prunus.errors import NoTreeError, PrunusError
 from prunus.geometry.near import within
-from prunus.kernels.neighbours import cover
+from prunus.geometry.neighbours import cover
 from prunus.model import Floats, PointCloud, Superpoints
 from prunus.params import Cover
 

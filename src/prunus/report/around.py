@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from html import escape
 
-from prunus.io.export import COLOURS
-from prunus.measure import branches, leaders, lengths_by_label
-from prunus.measure.trust import Trust
+from prunus.io.skeletons.export import COLOURS
 from prunus.model import Label, Skeleton
+from prunus.model.branches import branches, lengths_by_label
+from prunus.model.leaders import leaders
 from prunus.report.tables import html_table
 from prunus.result import Result
+from prunus.trust import Trust
 
 TRUST_NOTE = (
     '<p class="quiet">Trust: how likely a branch is right (its label, and what it hangs on); '

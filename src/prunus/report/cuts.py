@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from prunus.measure.cuts import Cut, Plan
+from prunus.cuts import Cut, Plan
 from prunus.model import Floats, Ints
 from prunus.report.tables import html_table
 

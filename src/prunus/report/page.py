@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from prunus.measure.cuts import Plan
+from prunus.cuts import Plan
 from prunus.report.around import labels_of, leaders_of, review_of, seconds_of, summary_of
 from prunus.report.cuts import cut_traces, cuts_section
 from prunus.report.scene import left_out_traces, scene_traces

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from prunus.io.export import COLOURS
-from prunus.measure import branches
+from prunus.io.skeletons.export import COLOURS
 from prunus.model import Floats, Ints, Kind, Label, PointCloud, SeededGraph, Skeleton
+from prunus.model.branches import branches
 
 MOST_POINTS = 40_000
 """More points of the cloud would make the page slow, not clearer."""

@@ -8,10 +8,10 @@ from typing import Any
 from pydantic import BaseModel
 
 from prunus.errors import Status
-from prunus.io.plans import PlanFile
 from prunus.io.records import FusedFile, PairRecord, TreeRecord
 from prunus.io.rig import RigFile
-from prunus.io.skeletons import SkeletonFile
+from prunus.io.skeletons.plans import PlanFile
+from prunus.io.skeletons.skeleton_file import SkeletonFile
 from prunus.schemas import ABOUT, HOME
 
 VERSION = 1

@@ -10,7 +10,7 @@ import numpy as np
 import viser
 from viser.transforms import SO3
 
-from prunus.corrections import Act, Refused
+from prunus.editing import Act, Refused
 from prunus.errors import PrunusError
 from prunus.model import Floats
 from prunus.studio.camera import Eye, standing

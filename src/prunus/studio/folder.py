@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from prunus.corrections import SetStatus
+from prunus.editing import SetStatus
 from prunus.studio.modes.mode import Key, freed, put, watch
 
 if TYPE_CHECKING:

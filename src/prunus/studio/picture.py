@@ -8,9 +8,9 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from prunus.measure import Branch, branch_of_rows, branches
 from prunus.model import Bools, Floats, Ints, Kind, PointCloud, SeededGraph, Skeleton
 from prunus.model.arrays import Bytes
+from prunus.model.branches import Branch, branch_of_rows, branches
 from prunus.report.scene import LEFT_OUT
 
 MOST_POINTS = 150_000

@@ -7,17 +7,18 @@ from pathlib import Path
 
 import numpy as np
 
-from prunus.corrections import State, Work
-from prunus.corrections.draft import Pair, pair_of
-from prunus.cutting import plan_file
+from prunus.cuts import Plan, plan_cuts
+from prunus.cuts.plan_file import plan_file
+from prunus.editing import State
+from prunus.editing.draft import Pair, pair_of
 from prunus.errors import PrunusError
-from prunus.io.plans import PlanFile, made_on, read_plan, write_plan
-from prunus.io.skeletons import sha256_of
-from prunus.measure import branches
-from prunus.measure.cuts import Plan, plan_cuts
-from prunus.measure.refine import refined
+from prunus.io.skeletons.plans import PlanFile, made_on, read_plan, write_plan
+from prunus.io.skeletons.skeleton_file import sha256_of
 from prunus.model import Floats, Kind, Skeleton
+from prunus.model.branches import branches
+from prunus.refine.refined import refined
 from prunus.result import REFINED_WITH
+from prunus.session import Work
 
 PLAN = "plan.json"
 

@@ -9,7 +9,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from prunus.io.export import COLOURS
+from prunus.io.skeletons.export import COLOURS
 from prunus.model import Floats, Ints, Kind, Label
 from prunus.model.arrays import Bytes
 from prunus.report.cuts import joined

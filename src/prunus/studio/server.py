@@ -10,8 +10,8 @@ import warnings
 
 import viser
 
-from prunus.corrections import Settings
 from prunus.errors import OptionError
+from prunus.session import Settings
 from prunus.studio.camera import FOV
 from prunus.studio.desk import Desk
 from prunus.studio.door import Door, is_loopback, own_page

@@ -7,8 +7,8 @@ from operator import itemgetter
 from pathlib import Path
 
 from prunus.errors import OptionError, PrunusError
+from prunus.files.safely import check_readable
 from prunus.io.inputs import clouds_in, is_one, names_of, source_of
-from prunus.io.safely import check_readable
 from prunus.names import folder_name
 
 SKELETON = "skeleton.json"

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
 
-from prunus.corrections import Settings
 from prunus.errors import OptionError
+from prunus.session import Settings
 from prunus.studio.shelf import items_in
 
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from prunus.corrections import Act, Settings, State, Work, branch_names, status_of
+from prunus.cuts import Plan
+from prunus.editing import Act, State, branch_names
+from prunus.editing.edits import Edits, edits
 from prunus.errors import PrunusError, describe
-from prunus.evaluate.edits import Edits, edits
-from prunus.intake import Scan
-from prunus.measure.cuts import Plan
+from prunus.frames.scan import Scan
 from prunus.model import PointCloud, Skeleton
+from prunus.session import Settings, Work, status_of
 from prunus.studio.picture import Picture
 from prunus.studio.planned import PLAN, file_of, save, told_of_file
 from prunus.studio.shelf import Item

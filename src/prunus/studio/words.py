@@ -7,8 +7,8 @@ from html import escape
 
 import numpy as np
 
-from prunus.io.export import COLOURS
-from prunus.measure.cuts import Cut, Plan
+from prunus.cuts import Cut, Plan
+from prunus.io.skeletons.export import COLOURS
 from prunus.model import Floats, Label
 from prunus.report.cuts import LOOK, SURE
 from prunus.studio.picture import KINDS, Picture, colour_of

@@ -1,17 +1,17 @@
 import numpy as np
 import pytest
 
-from prunus.io.scans import read_scan
-from prunus.lab.simulate.general import grow_general
-from prunus.lab.simulate.plant import plant_wide
-from prunus.lab.simulate.points import UNKNOWN_ROLE, point_truth, roles_of, written_truth
-from prunus.lab.simulate.scanners import scan_with
-from prunus.lab.simulate.settings import wide_orchard
-from prunus.lab.simulate.surface import sample_pieces
-from prunus.lab.simulate.ufo import grow_wide_ufo, wide_habits
-from prunus.lab.simulate.wide import simulate_wide
+from prunus.lab.simulate.orchard import write_simulated
+from prunus.lab.simulate.scan_folder import read_scan
+from prunus.lab.simulate.wide.general import grow_general
+from prunus.lab.simulate.wide.plant import plant_wide
+from prunus.lab.simulate.wide.points import UNKNOWN_ROLE, point_truth, roles_of, written_truth
+from prunus.lab.simulate.wide.scan import simulate_wide
+from prunus.lab.simulate.wide.scanners import scan_with
+from prunus.lab.simulate.wide.settings import wide_orchard
+from prunus.lab.simulate.wide.surface import sample_pieces
+from prunus.lab.simulate.wide.ufo import grow_wide_ufo, wide_habits
 from prunus.model import Kind, Label, Role
-from prunus.simulate.orchard import write_simulated
 
 SEED_NOT_OF_THE_RIG = 7
 

@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from prunus.kernels import reference
 from prunus.paper.kernels.forest import spanning_forest
+from tests import reference
 
 
 @settings(deadline=None, max_examples=40)

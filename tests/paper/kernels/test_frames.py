@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from prunus.kernels import reference
-from prunus.kernels.neighbours import within
+from prunus.geometry.neighbours import within
 from prunus.paper.kernels.frames import (
     HIGH,
     WIDE,
@@ -15,6 +14,7 @@ from prunus.paper.kernels.frames import (
     least_direction,
     room_for_ends,
 )
+from tests import reference
 
 
 @settings(deadline=None, max_examples=40)

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from prunus.kernels import reference
 from prunus.paper.kernels.ranks import average_ranks
+from tests import reference
 
 
 def ranks(values: list[float], copies: list[int]) -> list[float]:

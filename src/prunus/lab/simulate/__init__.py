@@ -1,4 +1,7 @@
-"""The wide orchard: trees, surroundings and scanners drawn from ranges far wider than ours.
+"""A simulated orchard: true skeletons from a seed, and scans of the row they stand in."""
 
-`wide.toml` documents every range. The trees and rigs of `prunus.simulate` are one corner of it.
-"""
+from prunus.lab.simulate.grow import grow_tree
+from prunus.lab.simulate.habits import Habits, ufo_habits
+from prunus.lab.simulate.scan import Scan, simulate_scan
+
+__all__ = ["Habits", "Scan", "grow_tree", "simulate_scan", "ufo_habits"]

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from prunus.kernels.compiled import kernel
+from prunus.geometry.compiled import kernel
 from prunus.model.arrays import Floats, Ints
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from prunus.kernels.compiled import kernel
+from prunus.geometry.compiled import kernel
 from prunus.model.arrays import Floats, Ints
 
 WIDE = 32

@@ -5,7 +5,7 @@ from heapq import heappop, heappush
 import numpy as np
 from numpy.typing import NDArray
 
-from prunus.kernels.compiled import kernel
+from prunus.geometry.compiled import kernel
 from prunus.model.arrays import Floats, Ints
 
 Words = NDArray[np.uint64]

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from prunus.kernels.compiled import kernel
+from prunus.geometry.compiled import kernel
 from prunus.model.arrays import Floats, Ints
 from prunus.paper.kernels.paths import Words
 from prunus.paper.kernels.ranks import average_ranks

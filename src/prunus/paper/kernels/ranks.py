@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from prunus.kernels.compiled import kernel
+from prunus.geometry.compiled import kernel
 from prunus.model.arrays import Floats, Ints
 
 FEW = 32

@@ -6,7 +6,7 @@ collision never merges two skeletons. (Sec. Proposing and resampling candidate s
 
 import numpy as np
 
-from prunus.kernels.compiled import kernel
+from prunus.geometry.compiled import kernel
 from prunus.model.arrays import Floats, Ints
 from prunus.paper.kernels.paths import Words, include
 from prunus.paper.kernels.propose import reward

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import viser
 
-from prunus.corrections import Brush, Class, Component, Lasso, Mark, PickBase, Rebuild, Slab
-from prunus.corrections.where import Shape
+from prunus.editing import Brush, Class, Component, Lasso, Mark, PickBase, Rebuild, Slab
+from prunus.editing.where import Shape
 from prunus.errors import PrunusError
 from prunus.model import Kind
 from prunus.studio.camera import Eye

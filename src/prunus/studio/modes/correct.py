@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from prunus.corrections import (
+from prunus.editing import (
     Act,
     AddPath,
     MoveBase,

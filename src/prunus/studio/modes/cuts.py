@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from prunus.corrections import State
+from prunus.cuts import Cut
+from prunus.editing import State
 from prunus.errors import PrunusError
-from prunus.io.export import COLOURS
-from prunus.measure.cuts import Cut
+from prunus.io.skeletons.export import COLOURS
 from prunus.model import Floats, Ints, Label
 from prunus.report.cuts import BLADE, LOOK, SURE, WAY, cone, disc
 from prunus.studio.modes.mode import Key, Mode, freed, watch

@@ -10,7 +10,7 @@ import viser
 from numpy.typing import NDArray
 
 from prunus import __version__
-from prunus.corrections import Rebuild, Work
+from prunus.editing import Rebuild
 from prunus.errors import PrunusError
 from prunus.io.labels import CATEGORIES, Category, LabelHead
 from prunus.model import ScoredGraph
@@ -18,6 +18,7 @@ from prunus.paper.candidates import find_candidates
 from prunus.paper.confidence import score_edges
 from prunus.paper.images import edge_images
 from prunus.paper.networks import NetworkScorer
+from prunus.session import Work
 from prunus.studio.modes.mode import Key, Mode
 from prunus.studio.picking import Ray, nearest_edge
 from prunus.studio.queue import Queue

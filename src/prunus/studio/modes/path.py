@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.corrections import AddPath, State
-from prunus.corrections.state import clear
-from prunus.corrections.wire import Place
+from prunus.editing import AddPath, State
+from prunus.editing.state import clear
+from prunus.editing.wire import Place
 from prunus.errors import PrunusError
 from prunus.model import Floats, Label
 from prunus.studio.picking import Ray, first_point, nearest_point

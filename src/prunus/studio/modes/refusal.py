@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import viser
 
-from prunus.corrections import Act, Refused
+from prunus.editing import Act, Refused
 from prunus.studio.words import block
 
 if TYPE_CHECKING:

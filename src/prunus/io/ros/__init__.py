@@ -1,0 +1,1 @@
+"""ROS bags: clouds and depth images out of them, skeletons into them."""

@@ -1,0 +1,1 @@
+"""Skeletons to files and from files, ours and those of other tools."""

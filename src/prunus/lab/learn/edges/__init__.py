@@ -1,0 +1,1 @@
+"""Learning the network of the paper's method: which candidate edges are real."""

@@ -1,0 +1,1 @@
+"""Learning the network of the point field."""

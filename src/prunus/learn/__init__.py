@@ -1,1 +1,0 @@
-"""Learn the edge confidence from simulated scans: labels, networks, training. Needs torch."""

@@ -1,0 +1,1 @@
+"""Centre lines and radii of a skeleton, fitted to the points of its tree."""

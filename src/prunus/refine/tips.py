@@ -1,0 +1,65 @@
+"""Where lines end: drawn out beyond their tips, and cut where their points end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from prunus.model import Bools, Floats, Ints
+from prunus.refine.centrelines import STEP, Centrelines, unit
+from prunus.refine.ribbons import AT_LEAST, window
+
+LONGER = 8
+"""A tip is drawn out by so many stations, straight, and keeps those that points follow."""
+STRAIGHT = 6
+"""Its direction is that of the last so many stations."""
+GAP = 3
+"""So many stations without points are no end."""
+USUAL = 0.25
+"""Nor is a place with this share of the points that are usual on the line."""
+
+
+def drawn_out(lines: Centrelines) -> tuple[Centrelines, Ints]:
+    """The lines with longer free ends, and for each station (S,) the one it was, or hangs on."""
+    more = np.where(lines.free, LONGER, 0)
+    size = np.diff(lines.start) + more
+    start = np.concatenate([[0], size.cumsum()])
+    line = np.repeat(np.arange(len(size)), size)
+    rank = np.arange(start[-1]) - start[line]
+    was = np.minimum(lines.first[line] + rank, lines.last[line])
+    beyond = (lines.first[line] + rank - was)[:, None]
+    before = np.maximum(lines.last - STRAIGHT, lines.first)
+    way = unit(lines.xyz[lines.last] - lines.xyz[before])
+    xyz = lines.xyz[was] + STEP * beyond * way[line]
+    return replace(lines, xyz=xyz, start=start), was
+
+
+def kept(lines: Centrelines, was: Ints, count: Floats, least: Ints) -> Bools:
+    """Which stations (S,) stay of drawn-out lines, given their points (S,) and what they were.
+
+    At least so many stay of each line (B,).
+    """
+    stays = np.ones(len(was), np.bool_)
+    near = window(lines, count[:, None], 1)[:, 0]
+    for number in np.flatnonzero(lines.free):
+        low, high = lines.start[number], lines.start[number + 1]
+        old = int(was[high - 1] - was[low])
+        end = max(_end(near[low:high], old), int(least[number]) - 1)
+        stays[low + end + 1 : high] = False
+    return stays
+
+
+def _end(count: Floats, old: int) -> int:
+    """The last station of a line, given points (R,) at its stations; `old` was the last."""
+    enough = max(AT_LEAST, USUAL * float(np.median(count[: old + 1])))
+    held = np.flatnonzero(count >= enough)
+    if len(held) == 0:
+        return old
+    inner = held[held <= old]
+    end = int(inner[-1]) if len(inner) else old
+    for station in held[held > end].tolist():
+        if station - end > GAP:
+            break
+        end = station
+    return end

@@ -1,0 +1,1 @@
+"""Traits of branches and trees, as phenotyping knows them."""
