@@ -37,7 +37,7 @@ def main() -> None:
                 _run(scan, method, home / method / own.with_suffix(""))
         for path in sorted(home.rglob("*")):
             if path.is_file() and path.suffix not in {".html", ".toml"}:
-                print(_digest(path), path.relative_to(home))
+                print(_digest(path, home), path.relative_to(home))
 
 
 def _run(scan: Path, method: str, out: Path) -> None:
@@ -58,8 +58,8 @@ def _prunus(*words: object) -> None:
         print("status", done.returncode, words[0], Path(str(words[1])).parent.name)
 
 
-def _digest(path: Path) -> str:
-    content = path.read_bytes()
+def _digest(path: Path, home: Path) -> str:
+    content = path.read_bytes().replace(str(home).encode(), b"")
     if path.suffix == ".json":
         content = json.dumps(_ours(json.loads(content)), sort_keys=True).encode()
     return hashlib.sha256(content).hexdigest()[:16]
