@@ -108,7 +108,7 @@ def _file(points: int) -> Iterator[Row]:
     code = (
         "import sys, json\n"
         "from pathlib import Path\n"
-        "from prunus.commands.skeletonize import Options, Task, do\n"
+        "from prunus.batch.run import Options, Task, do\n"
         "path, base = Path(sys.argv[1]), tuple(json.loads(sys.argv[2]))\n"
         "task = Task(path, path.parent / 'out')\n"
         "options = Options(base, 'z-up', report=False)\n"

@@ -564,3 +564,17 @@ def test_isolation_says_what_it_lacks(
     done = prunus("isolate", raw, *words)
     assert done.exit_code == status
     assert message in done.stderr
+
+
+def test_isolate_takes_points_and_parameters(tmp_path: Path, real_scan: Path) -> None:
+    def kept(*words: object) -> bytes:
+        done = prunus("isolate", real_scan, "-o", tmp_path / "tree.ply", *words)
+        assert done.exit_code == 0, done.output
+        return (tmp_path / "tree.ply").read_bytes()
+
+    mine = tmp_path / "mine.toml"
+    mine.write_text("[input]\npoints = 12000\n")
+    few = kept("--points", 12_000)
+    assert few == kept("--params", mine)
+    assert few != kept()
+    assert kept("--params", "paper")  # whose chain isolates nothing by itself

@@ -63,7 +63,9 @@ def test_a_cloud_is_read_and_skeletonized_with_the_same_options_by_cuts() -> Non
              "--no-isolate"}  # fmt: skip
     for name in ("skeletonize", "cuts"):
         assert chain <= set(options_of(name))
-    assert {"--base", "--at"} <= set(options_of("isolate"))
+    ways = {"--frame", "--unit", "--points", "--params", "--seed"}
+    assert ways | {"--base", "--at"} <= set(options_of("isolate"))
+    assert ways | {"--no-isolate"} <= set(options_of("studio"))
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from prunus.commands.skeletonize import Options, Task, do
+from prunus.batch.run import Options, Task, do
 from prunus.cuts import shipped_rules
 from prunus.cuts.plan_file import Source, cut_file, lines_of
 from prunus.errors import PrunusError

@@ -6,9 +6,9 @@ from shutil import copyfile
 
 import pytest
 
-from prunus.commands.evaluate import compare
 from prunus.editing import Mark, SetStatus
 from prunus.editing.edits import edits
+from prunus.lab.evaluate.pairs import compare
 from prunus.model import Kind, Label
 from prunus.model.branches import branches
 from prunus.model.leaders import leaders

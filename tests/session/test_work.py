@@ -397,7 +397,7 @@ def test_a_skeleton_is_opened_with_its_cloud(told: Path, tmp_path: Path) -> None
 def test_a_skeleton_with_a_base_by_hand_is_found_again(
     scan_file: Path, tmp_path: Path, machine: State
 ) -> None:
-    from prunus.commands.skeletonize import Options, Task, do
+    from prunus.batch.run import Options, Task, do
 
     up = machine.draft.after[machine.draft.after[machine.draft.base][0]][0]
     base = outside(machine, machine.draft.places[up])

@@ -1,31 +1,33 @@
-"""The demonstration: a simulated scan through the whole chain."""
+"""`prunus demo`: a simulated tree through the whole chain."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from prunus.io.clouds.cloud_file import write_cloud
-from prunus.io.skeletons.skeleton_file import read_skeleton, write_skeleton
-from prunus.lab.evaluate.curves import curve_measures
-from prunus.lab.simulate import simulate_scan
-from prunus.model import Label, Skeleton
+import typer
 
+from prunus.commands.options import OutputFolder, Seed
 
-def simulated_scan(folder: Path, seed: int) -> Skeleton:
-    """Grow and scan a tree; writes its points in the scan and truth.json; returns the truth."""
-    scan = simulate_scan(seed)
-    cloud = scan.target_cloud()
-    write_cloud(folder / "scan.ply", cloud.to_input.apply(cloud.xyz))
-    write_skeleton(folder / "truth.json", scan.truth)
-    return scan.truth
+if TYPE_CHECKING:
+    from prunus.commands.progress import Waiting
+from prunus.commands.skeletonize import report_on
 
 
-def compare(folder: Path, truth: Skeleton) -> list[str]:
-    """Lines that say how much of each label was found and how much of what was found is right."""
-    measures = curve_measures(read_skeleton(folder / "skeleton.json"), truth)
-    lines = ["  against the truth:  found  right"]
-    for label in Label:
-        recall, precision = (measures[f"{label.word}_{kind}"] for kind in ("recall", "precision"))
-        name = label.word.replace("_", " ")
-        lines.append(f"    {name:<17} {recall:5.0%}  {precision:5.0%}".replace("nan%", "   -"))
-    return lines
+def demo(
+    ctx: typer.Context, output: OutputFolder = Path("prunus-out/demo"), seed: Seed = 0
+) -> None:
+    """Grow a tree, scan it, skeletonize the scan, compare with the truth.
+
+    Another seed, another tree: `prunus demo --seed 7`
+    """
+    from prunus.batch.run import Options, Task
+    from prunus.lab.demo import compare, simulated_scan
+
+    waiting: Waiting = ctx.obj
+    waiting.doing("growing and scanning a tree")
+    truth = simulated_scan(output, seed)
+    base = tuple(truth.xyz[0].tolist())
+    options = Options(base, "z-up", seed=seed)
+    report_on(waiting, [Task(output / "scan.ply", output)], [], options, False, 1)
+    waiting.tell([*compare(output, truth), f"  now open {output / 'report.html'}"])

@@ -1,141 +1,72 @@
-"""`prunus isolate`: one tree out of a raw scan, all of them, or a list of what is in view."""
+"""`prunus isolate`: one tree out of a raw scan."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
+import typer
 
-from prunus.errors import NoTreeError, naming
-from prunus.frames.diagnosis import explaining
-from prunus.frames.linear import linear_of
-from prunus.frames.plausible import LEAST_LENGTH_M, LEAST_LINEAR, LEAST_SURE
-from prunus.frames.scan import Scan, open_scan
-from prunus.frames.upright import sureness
-from prunus.growth.chain import View, Votes
-from prunus.io.clouds.classes import check_ply, write_classes
-from prunus.io.clouds.cloud_file import FileCloud, check_kind, write_cloud
-from prunus.model import Floats, Skeleton
-from prunus.model.isolated import Isolated
-from prunus.params import Parameters
+from prunus.commands.options import (
+    BasePoint,
+    Frame,
+    FrameOfFile,
+    ParamsFile,
+    Points,
+    Seed,
+    UnitOfFile,
+    parameters_in,
+)
+from prunus.errors import OptionError
 
-
-@dataclass(frozen=True, eq=False)
-class Opened:
-    """A raw scan from a file, the trees that grow in it, and notes on where one was asked for."""
-
-    scan: Scan
-    view: View
-    rng: np.random.Generator
-
-    @classmethod
-    def of(
-        cls,
-        path: Path,
-        frame: str,
-        unit: str | None,
-        seed: int,
-        at: tuple[float, float, float] | None = None,
-    ) -> Opened:
-        """Read a file and look at it; meant is the tree at a point of the file's frame.
-
-        PrunusError naming the file where it is none, or the point is far from all wood;
-        NoTreeError where nothing is wood.
-        """
-        scan = open_scan(path, frame, unit)
-        with naming(path), explaining(scan.cloud):
-            base = None if at is None else scan.cloud.to_input.inverse().apply(at)
-            rng = np.random.default_rng(seed)
-            return cls(scan, Votes().look(scan.cloud, base, Parameters(), rng, {}), rng)
-
-    def place(self, point: Floats) -> Floats:
-        """A point of the house frame (3,) in the frame of the file."""
-        return self.scan.cloud.to_input.apply(point)
-
-    def tree(self) -> Isolated:
-        """The tree that is meant; NoTreeError: it is none."""
-        with naming(self.scan.file.path), explaining(self.scan.cloud):
-            isolated = self._alone(self.view)
-            if isolated is None:
-                raise NoTreeError("no tree was found: hardly any branches, or a surface or a heap")
-            return isolated
-
-    def trees(self) -> list[Isolated]:
-        """The trees in view, that which is meant first; NoTreeError where there is none."""
-        every = [self._alone(one) for one in self.view.each()]
-        found = [own for own in every if own is not None]
-        if not found:
-            with naming(self.scan.file.path), explaining(self.scan.cloud):
-                raise NoTreeError("no tree was found: no foot with branches is in view")
-        return found
-
-    def _alone(self, view: View) -> Isolated | None:
-        """The tree that is meant in a view, as `skeletonize` takes it; None: it is none."""
-        alone = Votes().alone(view, Parameters(), self.rng, {})
-        own = alone.isolated or view.points_of_tree()
-        return own if is_tree(alone.tree(), self.scan.cloud.xyz[own.target]) else None
+if TYPE_CHECKING:
+    from prunus.commands.progress import Waiting
 
 
-def is_tree(skeleton: Skeleton, xyz: Floats) -> bool:
-    """Whether what grew from a foot, of points (P, 3), is enough and sure enough to be a tree."""
-    if skeleton.lengths.sum() < LEAST_LENGTH_M or sureness(skeleton) < LEAST_SURE:
-        return False
-    return linear_of(xyz) >= LEAST_LINEAR
+def isolate(
+    ctx: typer.Context,
+    raw: Annotated[Path, typer.Argument(help="A raw scan: ground, posts, wires, neighbours.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="The tree's own points (PLY, XYZ, NPZ).")
+    ] = None,
+    base: BasePoint = None,
+    list_: Annotated[bool, typer.Option("--list", help="Only list the trees in view.")] = False,
+    every: Annotated[bool, typer.Option("--all", help="Write each tree in view.")] = False,
+    classes: Annotated[
+        bool, typer.Option("--classes", help="Write all points, with what each is (PLY).")
+    ] = False,
+    frame: FrameOfFile = Frame.AUTO,
+    unit: UnitOfFile = None,
+    points: Points = None,
+    params: ParamsFile = None,
+    seed: Seed = 0,
+) -> None:
+    """Take one tree out of a raw scan; the scan itself stays as it is.
 
+    What is there: `prunus isolate raw.ply --list`
 
-def check_output(path: Path, classes: bool) -> None:
-    """Raise OptionError where the ending of a file is none that can be written."""
-    if classes:
-        check_ply(path)
+    One of them: `prunus isolate raw.ply -o tree.ply --at 0.35 1.10 1.45`
+
+    What each point was taken for: `prunus isolate raw.ply -o c.ply --classes`
+    """
+    waiting: Waiting = ctx.obj
+    if output is None and not list_:
+        raise OptionError("nowhere to write to: say -o TREE.ply, or --list")
+    if base is not None and (every or list_):
+        raise OptionError("--at: of one tree; expected neither --all nor --list beside it")
+    from prunus.isolation import Opened, check_output, list_trees, write_all, write_tree
+
+    settings = parameters_in(params, points, no_isolate=False)
+    if settings.isolation.isolate == "never":  # as the paper's have it, of no use here
+        settings = settings.changed("isolation", isolate="auto")
+    if output is not None:
+        check_output(output, classes)
+    waiting.doing(f"looking at {raw}")
+    opened = Opened.of(raw, frame.value, unit and unit.value, seed, base, settings)
+    if output is None or list_:
+        lines = list_trees(opened)
+    elif every:
+        lines = write_all(opened, output, classes)
     else:
-        check_kind(path)
-
-
-def write_tree(opened: Opened, output: Path, classes: bool) -> list[str]:
-    """Write the tree that is meant, or all points with their classes; what to say of it."""
-    isolated = opened.tree()
-    _write(output, opened.scan.file, isolated, classes)
-    said = [*opened.view.notes, _standing(opened, isolated), isolated.told()]
-    return [*opened.scan.notes, *said]
-
-
-def write_all(opened: Opened, output: Path, classes: bool) -> list[str]:
-    """Write every tree in view as OUTPUT_1, OUTPUT_2, ...; what to say of them."""
-    lines, trees = [], opened.trees()
-    for number, isolated in enumerate(trees, 1):
-        path = _numbered(output, number)
-        _write(path, opened.scan.file, isolated, classes)
-        lines.append(f"{path}: {isolated.target.sum()} points; {_standing(opened, isolated)}")
-    older = _numbered(output, len(trees) + 1)
-    if older.exists():
-        lines.append(f"{older}: was there before; it is no tree of this scan")
-    return [*opened.scan.notes, *lines]
-
-
-def _numbered(output: Path, number: int) -> Path:
-    return output.with_stem(f"{output.stem}_{number}")
-
-
-def list_trees(opened: Opened) -> list[str]:
-    """The trees in view, a line each, with a point to give to --at."""
-    lines = []
-    for number, isolated in enumerate(opened.trees(), 1):
-        at = " ".join(f"{value:.2f}" for value in opened.place(isolated.foot))
-        height = float(np.ptp(opened.scan.cloud.xyz[isolated.target, 2]))
-        about = f"{isolated.target.sum():>7} points, {height:.1f} m high"
-        lines.append(f"{number}  --at {at}  {about}{'  (taken without --at)' * (number == 1)}")
-    return lines
-
-
-def _standing(opened: Opened, isolated: Isolated) -> str:
-    place = ", ".join(f"{value:.2f}" for value in opened.place(isolated.foot))
-    return f"the foot of its trunk is at ({place})"
-
-
-def _write(path: Path, file: FileCloud, isolated: Isolated, classes: bool) -> None:
-    if classes:
-        write_classes(path, file, isolated.kind)
-        return
-    held = isolated.target
-    write_cloud(path, file.xyz[held], None if file.rgb is None else file.rgb[held])
+        lines = write_tree(opened, output, classes)
+    waiting.tell(lines)

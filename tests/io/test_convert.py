@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from prunus.commands.convert import FORMATS, convert_file
 from prunus.errors import PrunusError
+from prunus.io.convert import FORMATS, convert_file
 from prunus.io.ply import read_ply
 from prunus.io.skeletons.lines import read_lines
 from prunus.io.skeletons.skeleton_file import read_skeleton, write_skeleton
