@@ -53,7 +53,7 @@ def _run(scan: Path, method: str, out: Path) -> None:
 
 def _prunus(*words: object) -> None:
     command = [sys.executable, "-m", "prunus.cli", *map(str, words)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = subprocess.run(command, cwd=tempfile.gettempdir(), capture_output=True, text=True)
     if done.returncode:
         print("status", done.returncode, words[0], Path(str(words[1])).parent.name)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from prunus.cuts.limbs import LIKELY_RADIUS, Limb, Limbs
+from prunus.cuts.limbs import Limb, Limbs
 from prunus.model import Label, Skeleton
 from tests.cuts.trees import drawn
 
@@ -26,7 +26,7 @@ def test_limbs_know_their_names_their_parents_and_their_bark() -> None:
 def test_a_radius_that_is_unknown_is_taken_for_a_likely_one() -> None:
     skeleton = drawn()
     limbs = Limbs.of(skeleton.with_radius(np.full(len(skeleton), np.nan)))
-    assert limb(limbs, "side branch 1").bark == pytest.approx(LIKELY_RADIUS[Label.LEADER])
+    assert limb(limbs, "side branch 1").bark == pytest.approx(0.010), "as thick as usual"
 
 
 def test_a_branch_that_slants_leaves_the_bark_later() -> None:

@@ -6,10 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from prunus.model import Floats, Label, Skeleton
+from prunus.cuts.limbs import Limbs
+from prunus.model import Floats, Label, PointCloud, Skeleton
+from prunus.model.branches import branches
 from prunus.refine.radii import Unknown
-from prunus.refine.refined import Refined
+from prunus.refine.refined import Refined, refined
 from prunus.traits.definitions import BRANCH_TRAITS, TREE_TRAITS
+from prunus.traits.sizes import Limb as TraitsLimb
 from prunus.traits.sizes import Record
 from prunus.traits.traits import branch_traits, tree_traits
 
@@ -90,7 +93,7 @@ def test_wood_is_that_of_cut_cones() -> None:
     trunk, side = of(Label.TRUNK), of(Label.SIDE_BRANCH)
     assert trunk["volume_cm3"] == pytest.approx(math.pi * 4**2 * 40)
     assert trunk["surface_cm2"] == pytest.approx(2 * math.pi * 4 * 40)
-    assert side["volume_cm3"] == pytest.approx(math.pi * 0.4**2 * 20), "outside the leader"
+    assert side["volume_cm3"] == pytest.approx(math.pi * 0.4**2 * 29), "outside the leader"
 
 
 def test_an_unknown_radius_gives_no_number_and_a_reason() -> None:
@@ -147,3 +150,16 @@ def test_the_docs_define_every_trait() -> None:
     for defined in (BRANCH_TRAITS, TREE_TRAITS):
         for name, trait in defined.items():
             assert f"| `{name}` | {trait.unit} | {trait.definition} |" in text, name
+
+
+def test_traits_and_cuts_know_one_place_where_a_branch_comes_out_of_its_parent(
+    scanned: tuple[Skeleton, PointCloud],
+) -> None:
+    truth, cloud = scanned
+    tree = refined(truth, cloud)
+    limbs = Limbs.of(tree.skeleton, tree.names)
+    found = branches(tree.skeleton)
+    assert len(limbs.all) == len(found) > 10
+    for limb, branch in zip(limbs.all, found, strict=True):
+        above = found[limb.parent] if limb.parent >= 0 else None
+        assert TraitsLimb(tree, branch, above).inner == limb.bark

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.cuts.limbs import LIKELY_RADIUS, Limb, Limbs
+from prunus.cuts.limbs import Limb, Limbs
 from prunus.cuts.nearby import Nearby, told_by_points
 from prunus.cuts.rules import Demand
 from prunus.geometry.near import away_from
 from prunus.model import Floats
+from prunus.refine.radii import known_radius
 from prunus.refine.refined import Refined
 
 BESIDE = 0.12
@@ -80,9 +81,9 @@ def evidence_of(limbs: Limbs, tree: Refined, demand: Demand, points: Nearby | No
 
 
 def _parent_radius(limbs: Limbs, limb: Limb) -> float:
-    radius = float(limbs.skeleton.radius[limb.rows[0]])
     parent = limbs.parent_of(limb)
-    return radius if radius > 0 or parent is None else LIKELY_RADIUS[parent.label]
+    label = limb.label if parent is None else parent.label
+    return known_radius(limbs.skeleton, int(limb.rows[0]), label)
 
 
 def _rise(parent: Limb, foot: Floats) -> float:

@@ -7,22 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from prunus.geometry.near import away_from
+from prunus.geometry.exits import exit_along
 from prunus.model import Bools, Floats, Ints, Label, Skeleton
 from prunus.model.branch_names import branch_names
 from prunus.model.branches import Branch, branch_of_rows, branches
+from prunus.refine.radii import known_radius
 
-LIKELY_RADIUS = {
-    Label.TRUNK: 0.030,
-    Label.SUPPORT: 0.020,
-    Label.LEADER: 0.012,
-    Label.SIDE_BRANCH: 0.005,
-}
-"""Where a radius is unknown, metres; a cut that rests on one is reviewed."""
-STEP = 0.002
-"""Where a branch comes out of its parent's bark is looked for in steps of so many metres ..."""
-NEAR = 0.30
-"""... within so many metres of its start."""
 OUTSET, ONWARD = 0.04, 0.12
 """A branch bends at its foot when its first so many metres turn into those up to there."""
 
@@ -143,7 +133,10 @@ def _limb(
     rows = branch.rows
     along = np.concatenate([[0.0], lengths[rows[1:]].cumsum()])
     xyz = skeleton.xyz[rows]
-    bark = 0.0 if above is None else _out_of_bark(xyz, along, above, skeleton.radius[rows[0]])
+    bark = 0.0
+    if above is not None:
+        radius = known_radius(skeleton, int(rows[0]), above.label)
+        bark = exit_along(xyz, along, above.xyz, radius)
     reach = float(along[1] + far[rows[1]]) - bark
     return Limb(number, name, branch.label, rows, xyz, along, parent, bark, reach)
 
@@ -155,25 +148,3 @@ def _farthest(skeleton: Skeleton, lengths: Floats) -> Floats:
         parent = skeleton.parent[row]
         far[parent] = max(far[parent], far[row] + lengths[row])
     return far
-
-
-def _out_of_bark(xyz: Floats, along: Floats, above: Limb, radius: float) -> float:
-    """Where along a branch its axis is first a parent's radius away from the parent's axis."""
-    if along[-1] <= 0:
-        return 0.0
-    if not radius > 0:
-        radius = LIKELY_RADIUS[above.label]
-    steps = np.arange(0.0, min(along[-1], NEAR), STEP)
-    points = np.column_stack([np.interp(steps, along, xyz[:, axis]) for axis in range(3)])
-    away = away_from(points, stretch_near(above.xyz, xyz[0]))
-    first = int((away >= radius).argmax())
-    if first == 0:
-        return float(along[-1])
-    return float(np.interp(radius, away[first - 1 : first + 1], steps[first - 1 : first + 1]))
-
-
-def stretch_near(line: Floats, place: Floats) -> Floats:
-    """The stretch of a line (R, 3) that comes near a place (3,) on it or beside it."""
-    rows = np.flatnonzero(((line - place) ** 2).sum(axis=1) <= (2 * NEAR) ** 2)
-    low, high = (rows[0], rows[-1]) if len(rows) else (0, len(line))
-    return line[max(low - 1, 0) : high + 2]

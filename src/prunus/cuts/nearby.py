@@ -7,7 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from prunus.cuts.limbs import Limb, Limbs, stretch_near
+from prunus.cuts.limbs import Limb, Limbs
+from prunus.geometry.exits import stretch_near
 from prunus.geometry.near import away_from, within
 from prunus.model import Floats
 from prunus.model.arrays import cubes

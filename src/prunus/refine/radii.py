@@ -13,7 +13,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from prunus.model import Bools, Floats, Ints, Label
+from prunus.model import Bools, Floats, Ints, Label, Skeleton
 from prunus.refine.centrelines import STEP, Centrelines
 from prunus.refine.ribbons import window
 
@@ -27,6 +27,15 @@ USUAL = {
 
 Those of the simulated orchard (`docs/simulation.md`), and half as much doubt again.
 """
+
+
+def known_radius(tree: Skeleton, row: int, label: Label) -> float:
+    """The radius at a row of a tree, metres; half way along a usual branch where it is unknown."""
+    foot, _, tip, _ = USUAL[label]
+    radius = float(tree.radius[row])
+    return radius if radius > 0 else (foot + tip) / 2
+
+
 WIDE = 0.895
 """The radius is this share of half the width of a ribbon without noise."""
 SHOWS = {

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from prunus.geometry.exits import exit_along
 from prunus.model import Floats, Label
 from prunus.model.branches import Branch
-from prunus.refine.radii import USUAL, Unknown
+from prunus.refine.radii import USUAL, Unknown, known_radius
 from prunus.refine.refined import Refined
 
 Record = dict[str, Any]
@@ -44,13 +45,12 @@ class Limb:
 
     @cached_property
     def inner(self) -> float:
-        """Metres of it within the wood of its parent; 0 where that is unknown, or it goes on."""
-        if self.parent is None or self.branch.rows[0] == self.parent.rows[-1]:
+        """Metres of it within the wood of its parent."""
+        if self.parent is None:
             return 0.0
-        radius = float(self.tree.skeleton.radius[self.branch.rows[0]])
-        away = np.linalg.norm(self.line - self.line[0], axis=1)
-        out = np.flatnonzero(away > radius)
-        return float(self.way[out[0]]) if len(out) else 0.0
+        tree = self.tree.skeleton
+        radius = known_radius(tree, int(self.branch.rows[0]), self.parent.label)
+        return exit_along(self.line, self.way, tree.xyz[self.parent.rows], radius)
 
     def at(self, along: float, values: Floats) -> float:
         """The value of (M,) at so many metres along it; at its foot its own, not its parent's."""
