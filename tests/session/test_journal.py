@@ -52,7 +52,6 @@ def test_what_was_written_is_read(path: Path) -> None:
     assert journal.head == HEAD
     assert [one.move for one in journal.lines] == MOVES
     assert [one.number for one in journal.lines] == [2, 3, 4, 5, 6]
-    assert journal.size == len(path.read_bytes())
 
 
 def test_at_first_there_is_nothing_to_undo_or_redo() -> None:
@@ -93,7 +92,7 @@ def test_a_torn_last_line_is_dropped_and_written_over(path: Path, cut: int) -> N
         (1, json.dumps(HEAD.model_dump() | {"params": {"x": 1}}), ":1: x: unknown parameter"),
         (2, "what", ":2: not JSON"),
         (2, "[" * 100_000, ":2: not JSON"),
-        (2, "[1]", ":2: expected an object"),
+        (2, "[1]", ":2: list; expected an object"),
         (2, '{"at": 3, "act": "undo"}', ":2: at: found 3"),
         (2, '{"at": "2026-01-01", "act": "undo"}', ":2: nothing to undo"),
         (3, '{"at": "2026-01-01", "act": "redo"}', ":3: nothing to redo"),

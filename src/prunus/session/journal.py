@@ -7,13 +7,9 @@ wrong is told by file and line, and the file stays as it is.
 
 from __future__ import annotations
 
-import contextlib
-import errno
 import json
-import os
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from io import FileIO
 from pathlib import Path
 from typing import Any, Literal
 
@@ -21,7 +17,8 @@ from pydantic import BaseModel, ConfigDict
 
 from prunus.editing.acts import SetStatus, from_json, to_json
 from prunus.errors import PrunusError
-from prunus.files.reading import json_of, record_of, text_of
+from prunus.files.jsonl import append_at, ended, object_in, whole_lines
+from prunus.files.reading import record_of
 from prunus.files.safely import write_bytes
 from prunus.io.clouds.units import Unit
 from prunus.io.inputs import JOURNAL
@@ -58,11 +55,10 @@ class Head(BaseModel):
 
 @dataclass(frozen=True)
 class Journal:
-    """What a file holds; `size` the bytes of it that do."""
+    """What a file holds."""
 
     head: Head
     lines: tuple[Line, ...]
-    size: int
 
 
 def read_journal(path: Path) -> Journal | None:
@@ -78,33 +74,17 @@ def read_journal(path: Path) -> Journal | None:
         raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
     if not content:
         return None
-    whole, ended, rest = content.rpartition(b"\n")
-    lines = whole.split(b"\n") if ended else []
-    if _is_whole(rest):
-        lines.append(rest)
-    while lines and not lines[-1].strip():
-        lines.pop()
+    lines = whole_lines(content)
     if not lines:
         raise PrunusError(f"{path}:1: not a journal; expected one that begins with its input")
     head = _head(path, lines[0])
     read = tuple(_line(path, number, text) for number, text in enumerate(lines[1:], 2))
     _check_moves(path, read)
-    return Journal(head, read, sum(len(text) + 1 for text in lines))
-
-
-def _is_whole(text: bytes) -> bool:
-    try:
-        return isinstance(json.loads(text), dict)
-    except (ValueError, RecursionError):
-        return False
+    return Journal(head, read)
 
 
 def _object(path: Path, number: int, text: bytes) -> dict[str, Any]:
-    where = f"{path}:{number}"
-    held = json_of(text_of(text, where), where)
-    if not isinstance(held, dict):
-        raise PrunusError(f"{where}: expected an object of JSON")
-    return held
+    return object_in(text, f"{path}:{number}")
 
 
 def _head(path: Path, text: bytes) -> Head:
@@ -178,43 +158,12 @@ def begin(path: Path, head: Head) -> End:
 
 def resume(path: Path, journal: Journal) -> End:
     """Go on with a journal; a torn last line is taken away, the last whole one ended."""
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise PrunusError(f"{path}: cannot be read ({error.strerror})") from error
-    kept = content[: journal.size].rstrip(b"\n") + b"\n"
-    if content != kept:
-        write_bytes(path, kept)
-    return End(len(kept), 2 + len(journal.lines))
+    return End(ended(path), 2 + len(journal.lines))
 
 
 def append(path: Path, end: End, move: Move, gives: str) -> tuple[Line, End]:
-    """Write a line, and wait until it is on the disk.
-
-    Raises PrunusError where it cannot be written, or another process wrote meanwhile; the journal
-    then stays as it was.
-    """
+    """Write a line, and wait until it is on the disk; errors are those of `append_at`."""
     now = datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
     told = {"act": move} if isinstance(move, str) else to_json(move)
-    text = (json.dumps({"at": now, **told, "gives": gives}) + "\n").encode()
-    try:
-        with path.open("r+b", buffering=0) as file:
-            _add(file, path, end.size, text)
-    except OSError as error:
-        raise PrunusError(f"{path}: cannot be written ({error.strerror})") from error
-    line = Line(end.number, now, move, gives)
-    return line, End(end.size + len(text), end.number + 1)
-
-
-def _add(file: FileIO, path: Path, size: int, line: bytes) -> None:
-    if os.fstat(file.fileno()).st_size != size:
-        raise PrunusError(f"{path}: another process wrote to it; open the tree again")
-    try:
-        file.seek(size)
-        if file.write(line) != len(line):
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        os.fsync(file.fileno())
-    except OSError:
-        with contextlib.suppress(OSError):
-            file.truncate(size)
-        raise
+    size = append_at(path, end.size, {"at": now, **told, "gives": gives})
+    return Line(end.number, now, move, gives), End(size, end.number + 1)
