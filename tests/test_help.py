@@ -65,7 +65,7 @@ def test_a_cloud_is_read_and_skeletonized_with_the_same_options_by_cuts() -> Non
         assert chain <= set(options_of(name))
     ways = {"--frame", "--unit", "--points", "--params", "--seed"}
     assert ways | {"--base", "--at"} <= set(options_of("isolate"))
-    assert ways | {"--no-isolate"} <= set(options_of("studio"))
+    assert ways | {"--no-isolate", "--scans"} <= set(options_of("studio"))
 
 
 @pytest.mark.parametrize(

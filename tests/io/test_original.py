@@ -46,11 +46,14 @@ def test_one_of_the_same_name_with_other_contents_is_passed_over(tmp_path: Path)
     assert str(other) in str(caught.value)
 
 
-@pytest.mark.parametrize("name", ["gone.ply", "../scan.ply", "sub/scan.ply"])
-def test_what_is_not_there_or_is_no_name_is_told(tmp_path: Path, name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [("gone.ply", "--scans"), ("../scan.ply", "name of a file"), ("sub/scan.ply#t", "name of")],
+)
+def test_what_is_not_there_or_is_no_name_is_told(tmp_path: Path, name: str, told: str) -> None:
     put(tmp_path / "sub" / "scan.ply")
     wanted = InputRecord(file=name, sha256="0", points=1)
-    with pytest.raises(PrunusError, match="--scans"):
+    with pytest.raises(PrunusError, match=told):
         original_of(wanted, tmp_path / "studio" / "tree", tmp_path / "sub")
 
 

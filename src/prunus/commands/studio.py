@@ -13,6 +13,7 @@ from prunus.commands.options import (
     NoIsolate,
     ParamsFile,
     Points,
+    Scans,
     Seed,
     UnitOfFile,
     parameters_in,
@@ -44,6 +45,7 @@ def studio(
     params: ParamsFile = None,
     seed: Seed = 0,
     no_isolate: NoIsolate = False,
+    scans: Scans = None,
 ) -> None:
     """Look at trees, clean, correct and label them, on a page in the browser.
 
@@ -59,7 +61,7 @@ def studio(
 
     settings = Settings(
         frame=frame.value, unit=unit and unit.value, seed=seed,
-        params=parameters_in(params, points, no_isolate),
+        params=parameters_in(params, points, no_isolate), scans=scans,
     )  # fmt: skip
 
     def say(line: str) -> None:

@@ -19,8 +19,12 @@ def original_of(record: InputRecord, folder: Path, scans: Path | None = None) ->
 
     Looked for in `scans` where that is given, else in the folder, in those above it, and in the
     folder that one works in; there also one folder deeper, and in folders called NAME.
-    Raises PrunusError where there is none of that name, or another content in all of that name.
+    Raises PrunusError where there is none of that name, or another content in all of that name, or
+    the name is none.
     """
+    file = record.file.partition("#")[0]
+    if Path(file).name != file:
+        raise PrunusError(f"input.file: found {record.file!r}; expected the name of a file")
     others = []
     for path in dict.fromkeys(_places(record.file, folder, scans)):
         if digest_of(source_of(path).path) == record.sha256:
@@ -41,8 +45,6 @@ def original_of(record: InputRecord, folder: Path, scans: Path | None = None) ->
 def _places(name: str, folder: Path, scans: Path | None) -> Iterator[Path]:
     """Where an input of that name lies, if anywhere; a topic of a bag keeps its topic."""
     file, _, topic = name.partition("#")
-    if Path(file).name != file:
-        return
     own = folder.resolve()
     roots = [scans] if scans else [own, *list(own.parents)[:2], Path.cwd()]
     for root in roots:

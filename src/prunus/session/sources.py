@@ -10,11 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from prunus.errors import PrunusError, naming
-from prunus.files.safely import digest_of
 from prunus.frames.scan import Scan, open_scan
-from prunus.io.inputs import source_of
-from prunus.io.original import called
-from prunus.io.skeletons.skeleton_file import InputRecord, read_record
+from prunus.io.original import original_of
+from prunus.io.skeletons.skeleton_file import read_record
 from prunus.model import Skeleton
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
@@ -26,12 +24,13 @@ Point = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Settings:
-    """How the chain is run on an input: see `open_scan` and `skeletonize`."""
+    """How the chain is run on an input, see `open_scan` and `skeletonize`, and where scans lie."""
 
     frame: str = "auto"
     unit: str | None = None
     params: Parameters = field(default_factory=Parameters)
     seed: int = 0
+    scans: Path | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +61,8 @@ class Machine:
 def source_from(path: Path, settings: Settings) -> Source:
     """What a path names: a cloud, or by a `skeleton.json` the cloud from which it came.
 
-    A skeleton brings its own parameters and seed. Raises PrunusError where its cloud is not to be
-    found beside it, beside its folder or here, or is another one than it was.
+    A skeleton brings its own parameters and seed; its cloud is looked for as in `original_of`, with
+    the same errors.
     """
     if path.suffix.lower() != ".json":
         return Source(path, settings)
@@ -75,29 +74,9 @@ def source_from(path: Path, settings: Settings) -> Source:
         params = Parameters.of_record(record.params, f"{path}: params")
     seed = settings.seed if record.seed is None else record.seed
     own = replace(settings, params=params, seed=seed)
-    return Source(_cloud_of(path, record.input), own, expected=skeleton)
-
-
-def _cloud_of(path: Path, wanted: InputRecord) -> Path:
-    name = wanted.file
-    if name in ("", ".", "..") or "\\" in name or "/" in name.partition("#")[0]:
-        raise PrunusError(f"{path}: input.file: found {name!r}; expected the name of a file")
-    folders = list(dict.fromkeys([path.parent, path.parent.parent, Path()]))
-    paths = [path for one in folders for path in dict.fromkeys([one / name, *called(name, one)])]
-    found = [source_of(path) for path in paths]
-    there = [source for source in found if source.path.exists()]
-    for source in there:
-        if digest_of(source.path) == wanted.sha256:
-            return source.full
-    if there:
-        raise PrunusError(
-            f"{there[0].path}: is not the cloud of which {path} is (other contents); "
-            "expected the very file, or open the cloud instead"
-        )
-    raise PrunusError(
-        f"{path}: its cloud {name!r} was not found; put it beside it, into the folder above, or "
-        "where you are, or open the cloud instead"
-    )
+    with naming(path):
+        cloud = original_of(record.input, path.parent, settings.scans)
+    return Source(cloud, own, expected=skeleton)
 
 
 def unseen(scan: Scan) -> None:
