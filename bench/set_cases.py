@@ -118,10 +118,10 @@ def _version() -> str:
     """Changes with whatever makes the cases."""
     home = Path(prunus.__file__).parent
     digest = hashlib.sha256()
-    for folder in (home / "simulate", home / "lab" / "simulate"):
-        for path in sorted([*folder.glob("*.py"), *folder.glob("*.toml")]):
-            digest.update(path.read_bytes())
-    for path in (home / "measure" / "seen.py", Path(__file__).with_name("drawn_ufo.py")):
+    made_by = home / "lab" / "simulate"
+    for path in sorted([*made_by.rglob("*.py"), *made_by.rglob("*.toml")]):
+        digest.update(path.read_bytes())
+    for path in (home / "lab" / "evaluate" / "seen.py", Path(__file__).with_name("drawn_ufo.py")):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:8]
 

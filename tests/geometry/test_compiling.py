@@ -33,7 +33,7 @@ class Heard:
         self.now, self.caplog = 50.0, caplog
         self.listener = Listener(lambda: self.now)
 
-    def compiles(self, seconds: float, module: str = "prunus.kernels.feet") -> list[str]:
+    def compiles(self, seconds: float, module: str = "prunus.fusion.axes") -> list[str]:
         self.caplog.clear()
         self.listener.on_start(of(module))
         self.now += seconds

@@ -71,8 +71,8 @@ PARENT = """
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from prunus.ending import end_on_signals
-from prunus.workers import side_by_side
+from prunus.processes.ending import end_on_signals
+from prunus.processes.workers import side_by_side
 from tests import deeds
 
 if __name__ == "__main__":

@@ -48,8 +48,9 @@ def left(line: Floats, inside: Bools, err: list[float], usual: tuple[float, floa
     """The station of `UP` from which a line leaves."""
     lines, home = np.concatenate([UP, line]), np.array([UP[0], line[0]])
     found = feet(
-        lines, START, PARENT, inside, home, np.array([ANY, usual]), np.array([err, err]), 6, 8
-    )
+        lines, START, PARENT, inside, home=home, usual=np.array([ANY, usual]),
+        err=np.array([err, err]), ahead=6, slide=8,
+    )  # fmt: skip
     assert found[0] == -1
     return int(found[1])
 
@@ -67,8 +68,9 @@ def test_lines_leave_from_the_same_stations(seed: int, ahead: int, slide: int) -
     home = rng.normal(0, 0.05, (4, 3))
     usual, err = rng.uniform(0.2, 2.0, (4, 2)), rng.uniform(0.01, 0.1, (4, 2))
     found = feet(
-        np.concatenate(lines), start, parent, np.concatenate(inside), home, usual, err, ahead, slide
-    )
+        np.concatenate(lines), start, parent, np.concatenate(inside), home=home, usual=usual,
+        err=err, ahead=ahead, slide=slide,
+    )  # fmt: skip
     slow = reference.feet(lines, parent, inside, home, usual, err, ahead, slide)
     own = [f - start[p] if p >= 0 else -1 for f, p in zip(found, parent, strict=True)]
     assert own == slow

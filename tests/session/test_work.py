@@ -249,7 +249,7 @@ WORKER = """
     import sys
     import numpy as np
     from pathlib import Path
-    from prunus.corrections import Work
+    from prunus.session import Work
     from prunus.errors import PrunusError
     from tests.session.conftest import QUICK
     from tests.editing.trees import random_act

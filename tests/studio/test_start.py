@@ -27,7 +27,16 @@ def test_an_address_of_another_machine_is_refused(tmp_path: Path) -> None:
         pytest.skip("viser is not installed")
     (tmp_path / "a.ply").write_text("x")
     with pytest.raises(PrunusError, match="no address of this machine"):
-        open_studio(tmp_path, tmp_path / "w", Settings(), "192.0.2.1", 0, None, False, print)
+        open_studio(
+            tmp_path,
+            tmp_path / "w",
+            Settings(),
+            host="192.0.2.1",
+            port=0,
+            token=None,
+            browser=False,
+            say=print,
+        )
 
 
 def test_no_browser_is_opened_over_ssh(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -68,4 +68,6 @@ def studio(
         waiting.rest()
         waiting.tell([line])
 
-    open_studio(path, output, settings, host, port, token, not no_open, say)
+    open_studio(
+        path, output, settings, host=host, port=port, token=token, browser=not no_open, say=say
+    )

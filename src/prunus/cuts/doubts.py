@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from prunus.cuts.evidence import Evidence
 from prunus.cuts.limbs import Limbs
 from prunus.cuts.reach import SMEAR, Approach, samples
 from prunus.cuts.rules import Demand
-from prunus.cuts.settings import CutRules
+from prunus.cuts.settings import CutRules, Review
 from prunus.geometry.near import nearest
 from prunus.model import Bools, Floats, Label
 
@@ -22,35 +23,51 @@ UNSURE = 0.50
 
 def doubts_of(demand: Demand, evidence: Evidence, confidence: float, rules: CutRules) -> list[str]:
     """What is doubtful about a cut: the rule's own doubts, its branch, and the way to it."""
-    review, found = rules.review, list(demand.doubts)
+    found = [*demand.doubts]
     if demand.limb.label == Label.LEADER and getattr(rules, demand.rule).always_review:
         found.append("it goes through a leader")
-    if not math.isfinite(evidence.likely):
-        found.append("how likely its branch is right is not known")
-    elif confidence < review.confidence:
-        found.append(f"confidence {_floor(confidence):.2f}, under {review.confidence:g}")
-    if evidence.way < review.way:
-        found.append(f"a branch on the way to it is likely wrong ({evidence.way:.0%} sure)")
-    if not math.isfinite(evidence.diameter):
-        found.append("its diameter is not known")
-    elif evidence.doubt > UNSURE * evidence.diameter:
-        found.append(f"its diameter is known to {1e3 * evidence.doubt:.0f} mm only")
-    if evidence.seen < review.seen:
-        found.append(f"only {evidence.seen:.0%} of it has points")
+    found += _unlikely(evidence, confidence, rules.review)
+    found += _hardly_seen(evidence, rules.review)
     if demand.limb.label == Label.SIDE_BRANCH:
-        if evidence.thick > review.thick:
-            found.append(f"{evidence.thick:.0%} as thick as its leader: it may be one")
-        if evidence.diameter > review.stout:
-            found.append(f"{1e3 * evidence.diameter:.0f} mm thick: it may be a leader")
-        if evidence.upright < review.level:
-            found.append("its leader lies level there: it may be a support")
-        if evidence.behind > review.behind:
-            found.append("wood goes straight on behind its leader: it may be another's")
-        if evidence.past > review.past:
-            found.append("wood goes on past its tip that the skeleton does not have")
-        if evidence.touch < TOUCH:
-            found.append(f"its tip touches {evidence.touched}: it may belong to it")
+        found += _something_else(evidence, rules.review)
     return found
+
+
+def _unlikely(evidence: Evidence, confidence: float, review: Review) -> Iterator[str]:
+    """Where the branch, or one on the way to it, may be none."""
+    if not math.isfinite(evidence.likely):
+        yield "how likely its branch is right is not known"
+    elif confidence < review.confidence:
+        yield f"confidence {_floor(confidence):.2f}, under {review.confidence:g}"
+    if evidence.way < review.way:
+        yield f"a branch on the way to it is likely wrong ({evidence.way:.0%} sure)"
+
+
+def _hardly_seen(evidence: Evidence, review: Review) -> Iterator[str]:
+    """Where the scan tells little of it."""
+    if not math.isfinite(evidence.diameter):
+        yield "its diameter is not known"
+    elif evidence.doubt > UNSURE * evidence.diameter:
+        yield f"its diameter is known to {1e3 * evidence.doubt:.0f} mm only"
+    if evidence.seen < review.seen:
+        yield f"only {evidence.seen:.0%} of it has points"
+
+
+def _something_else(evidence: Evidence, review: Review) -> Iterator[str]:
+    """Where a side branch may be something else, or another's."""
+    doubts = (
+        (evidence.thick > review.thick,
+         f"{evidence.thick:.0%} as thick as its leader: it may be one"),
+        (evidence.diameter > review.stout,
+         f"{1e3 * evidence.diameter:.0f} mm thick: it may be a leader"),
+        (evidence.upright < review.level, "its leader lies level there: it may be a support"),
+        (evidence.behind > review.behind,
+         "wood goes straight on behind its leader: it may be another's"),
+        (evidence.past > review.past,
+         "wood goes on past its tip that the skeleton does not have"),
+        (evidence.touch < TOUCH, f"its tip touches {evidence.touched}: it may belong to it"),
+    )  # fmt: skip
+    return (text for doubtful, text in doubts if doubtful)
 
 
 def _floor(share: float) -> float:

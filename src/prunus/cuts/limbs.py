@@ -89,7 +89,10 @@ class Limbs:
             parent = int(owner[branch.rows[0]])
             above = limbs[parent] if parent >= 0 else None
             name = names[number]
-            limbs.append(_limb(skeleton, branch, number, name, parent, above, far, lengths))
+            limbs.append(_limb(
+                skeleton, branch, number=number, name=name, parent=parent, above=above, far=far,
+                lengths=lengths,
+            ))  # fmt: skip
         return cls(skeleton, tuple(limbs), owner, measured)
 
     def with_label(self, label: Label) -> list[Limb]:
@@ -123,6 +126,7 @@ class Limbs:
 def _limb(
     skeleton: Skeleton,
     branch: Branch,
+    *,
     number: int,
     name: str,
     parent: int,

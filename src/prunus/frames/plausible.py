@@ -108,27 +108,24 @@ class Evidence:
             raise NoTreeError(f"no tree was found{reason}")
 
     def _against(self) -> Iterator[str]:
-        if self.length == 0:
-            yield ": no wood can be followed from its base"
-        if self.length < LEAST_LENGTH_M:
-            yield f": {self.length:.2f} m of wood; expected at least {LEAST_LENGTH_M:g} m"
-        if self.step >= MOST_STEP_M:
-            yield ""
-        if self.across < LINE_M:
-            yield ", but a straight line"
-        if self.linear < LEAST_LINEAR:
-            yield ", but a surface or a heap"
-        if self.sure < LEAST_SURE:
-            yield ", but a heap: what was followed is not like branches"
-        if self.wood < LEAST_WOOD:
-            yield f", but what is {self.wood:.0%} likely bare wood: a surface, a heap or leaves"
-        if self.explained < LEAST_EXPLAINED:
-            yield f": its branches explain {self.explained:.0%} of the points"
         heap = f", but a hedge or a heap of twigs: {1 - self.explained:.0%} of the points are not"
-        if not self.trunk and self.explained < MOST_EXPLAINED:
-            yield f"{heap} explained by any branch, and no trunk is in view"
-        if self.lies:
-            yield ", since it lies"
+        faults = (
+            (self.length == 0, ": no wood can be followed from its base"),
+            (self.length < LEAST_LENGTH_M,
+             f": {self.length:.2f} m of wood; expected at least {LEAST_LENGTH_M:g} m"),
+            (self.step >= MOST_STEP_M, ""),
+            (self.across < LINE_M, ", but a straight line"),
+            (self.linear < LEAST_LINEAR, ", but a surface or a heap"),
+            (self.sure < LEAST_SURE, ", but a heap: what was followed is not like branches"),
+            (self.wood < LEAST_WOOD,
+             f", but what is {self.wood:.0%} likely bare wood: a surface, a heap or leaves"),
+            (self.explained < LEAST_EXPLAINED,
+             f": its branches explain {self.explained:.0%} of the points"),
+            (not self.trunk and self.explained < MOST_EXPLAINED,
+             f"{heap} explained by any branch, and no trunk is in view"),
+            (self.lies, ", since it lies"),
+        )  # fmt: skip
+        return (text for wrong, text in faults if wrong)
 
     def doubts(self) -> list[str]:
         """Why it may be none."""

@@ -49,6 +49,12 @@ class Format:
     remark: str = ""
     names_branches: bool = False
 
+    def ready(self, skeleton: Skeleton) -> Skeleton:
+        """The skeleton with a radius everywhere, where one is needed."""
+        if "radius" not in self.needs:
+            return skeleton
+        return skeleton.with_radius(np.nan_to_num(skeleton.radius, nan=THIN))
+
 
 NAMES_ONLY = "labels are but the names of meshes and materials"
 FORMATS: dict[str, Format] = {
@@ -93,10 +99,7 @@ def convert_file(
     target is of no such kind.
     """
     if source.suffix.lower() not in (".json", ".swc"):
-        check_kind(target)
-        held = read_cloud(source, unit)
-        write_cloud(target, held.xyz, held.rgb)
-        return held.notes
+        return _cloud_converted(source, target, unit)
     kind = kind_of(target)
     for name, path in (("cloud", cloud), ("cuts", cuts)):
         if path is not None and kind != ".mcap":
@@ -115,10 +118,16 @@ def convert_file(
         notes, more = [*notes, *said, *told], [points, poses]
     elif form.names_branches:
         more = [{} if record is None else record.named]
-    if "radius" in form.needs:
-        skeleton = skeleton.with_radius(np.nan_to_num(skeleton.radius, nan=THIN))
-    form.write(target, skeleton, *more)
+    form.write(target, form.ready(skeleton), *more)
     return notes
+
+
+def _cloud_converted(source: Path, target: Path, unit: str | None) -> list[str]:
+    """Convert a cloud; returns notes on it."""
+    check_kind(target)
+    held = read_cloud(source, unit)
+    write_cloud(target, held.xyz, held.rgb)
+    return held.notes
 
 
 def _skeleton_in(source: Path) -> tuple[Skeleton, SkeletonFile | None]:

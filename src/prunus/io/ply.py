@@ -93,6 +93,18 @@ def ply_comments(content: bytes, path: Path) -> list[str]:
     return _header(content.removeprefix(BYTE_ORDER_MARK), path).comments
 
 
+def _property(words: list[str]) -> _Property | None:
+    """The property of a line of the header; None where the line is none."""
+    match words:
+        case ["list", count, kind, *name] if (
+            name and kind in TYPES and TYPES.get(count, "f")[0] in "iu"
+        ):
+            return _Property(" ".join(name), TYPES[kind], TYPES[count])
+        case [kind, *name] if name and kind in TYPES:
+            return _Property(" ".join(name), TYPES[kind])
+    return None
+
+
 def _header(content: bytes, path: Path) -> _Header:
     lines = _header_lines(content, path)
     form, body, elements, comments = "", 0, list[_Element](), list[str]()
@@ -105,12 +117,8 @@ def _header(content: bytes, path: Path) -> _Header:
                 form = name
             case ["element", name, rows] if re.fullmatch("[0-9]{1,18}", rows):
                 elements.append(_Element(name, int(rows), []))
-            case ["property", "list", count, kind, *name] if (
-                elements and name and kind in TYPES and TYPES.get(count, "f")[0] in "iu"
-            ):
-                elements[-1].properties.append(_Property(" ".join(name), TYPES[kind], TYPES[count]))
-            case ["property", kind, *name] if elements and name and kind in TYPES:
-                elements[-1].properties.append(_Property(" ".join(name), TYPES[kind]))
+            case ["property", *words] if elements and (found := _property(words)):
+                elements[-1].properties.append(found)
             case ["comment" | "obj_info", *words]:
                 comments.append(" ".join(words))
             case [] | ["ply"]:

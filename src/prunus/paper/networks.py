@@ -1,4 +1,4 @@
-"""The learned edge confidence: networks made by `prunus.learn`, run by onnxruntime (no torch)."""
+"""The learned edge confidence: networks made by `prunus train`, run by onnxruntime (no torch)."""
 
 from __future__ import annotations
 

@@ -36,6 +36,7 @@ def feet(
     start: Ints,
     parent: Ints,
     inside: Bools,
+    *,
     home: Floats,
     usual: Floats,
     err: Floats,

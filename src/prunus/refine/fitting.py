@@ -113,7 +113,9 @@ def fitted(lines: Centrelines, label: Ints, least: Ints, xyz: Floats) -> Fit:
     nowhere = np.zeros(len(label), np.int64)
     fit = Fit(lines, unseen, tapers(lines, label, unseen), nowhere, lines.xyz, np.zeros(len(label)))
     for turn in ROUNDS:
-        fit = _round(_evened(fit), label, least, xyz[:: turn.every], cameras, turn, starts)
+        fit = _round(
+            _evened(fit), label, least, xyz[:: turn.every], cameras, turn=turn, starts=starts
+        )
     return fit
 
 
@@ -132,6 +134,7 @@ def _round(
     least: Ints,
     xyz: Floats,
     cameras: Floats,
+    *,
     turn: Round,
     starts: Starts,
 ) -> Fit:
@@ -203,8 +206,8 @@ def _feet(lines: Centrelines, inside: Bools, starts: Starts, noise: float) -> In
     """The station (B,) of its parent at which each line starts; 0 for lines without a parent."""
     ends = lines.last[np.maximum(lines.parent, 0)]
     foot = feet(
-        lines.xyz, lines.start, lines.parent, inside, starts.place, starts.leaves,
-        starts.err(noise), AHEAD, SLIDE,
+        lines.xyz, lines.start, lines.parent, inside, home=starts.place, usual=starts.leaves,
+        err=starts.err(noise), ahead=AHEAD, slide=SLIDE,
     )  # fmt: skip
     return np.asarray(np.where(lines.goes_on, ends, np.maximum(foot, 0)))
 

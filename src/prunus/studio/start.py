@@ -19,6 +19,7 @@ def open_studio(
     path: Path,
     output: Path,
     settings: Settings,
+    *,
     host: str,
     port: int,
     token: str | None,

@@ -64,11 +64,11 @@ def test_near_surfaces_spill_over_their_edges_by_the_reach() -> None:
 
 
 def test_only_pixels_at_a_jump_fly_and_never_past_what_lies_behind() -> None:
-    depth, owner = blank()
+    depth, _ = blank()
     depth[:, :30], depth[:, 30:] = 1.0, 2.0
     chance, share = np.zeros(depth.shape), np.full(depth.shape, 0.5)
     before = depth.copy()
-    fly(depth, owner, 0.03, chance, share)
+    fly(depth, 0.03, chance, share)
     assert depth[20, 29] == pytest.approx(1 / 0.75)
     assert np.array_equal(np.delete(depth[5:-5, 5:-5], 24, 1), np.delete(before[5:-5, 5:-5], 24, 1))
 

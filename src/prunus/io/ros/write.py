@@ -114,7 +114,9 @@ class _Words:
         for row, (pose, size) in enumerate(zip(poses, sizes, strict=True), 1):
             label = Label(skeleton.label[row])
             markers.append(
-                self._marker(label.word, row, CYLINDER, pose, size, COLOURS[label], text="")
+                self._marker(
+                    label.word, row, CYLINDER, pose, size=size, colour=COLOURS[label], text=""
+                )
             )
         return self.new("visualization_msgs/MarkerArray", markers=markers)
 
@@ -129,12 +131,15 @@ class _Words:
         for text, pose, review in zip(cuts.ids, poses, cuts.review.tolist(), strict=True):
             topic, colour = ("/cuts/review", LOOKED_AT) if review else ("/cuts", FREE)
             size = [0.0, 0.0, TEXT_HEIGHT_M]
-            markers.append(self._marker(topic, count[review], TEXT, pose, size, colour, text=text))
+            number = count[review]
+            markers.append(
+                self._marker(topic, number, TEXT, pose, size=size, colour=colour, text=text)
+            )
             count[review] += 1
         return self.new("visualization_msgs/MarkerArray", markers=markers)
 
     def _marker(
-        self, space: str, number: int, kind: int, pose: Any, size: list[float],
+        self, space: str, number: int, kind: int, pose: Any, *, size: list[float],
         colour: tuple[int, int, int], text: str,
     ) -> Any:  # fmt: skip
         shares = dict(zip("rgb", (value / 255 for value in colour), strict=True))

@@ -114,7 +114,7 @@ def fatten(depth: Floats, owner: Ints, reach: Ints) -> tuple[Floats, Ints]:
 
 
 @kernel
-def fly(depth: Floats, owner: Ints, jump: float, chance: Floats, share: Floats) -> None:
+def fly(depth: Floats, jump: float, chance: Floats, share: Floats) -> None:
     """Let pixels at edges fly: between the near surface and what lies behind it, in disparity.
 
     An edge is where a neighbour is empty or `jump` metres deeper; `chance` (H, W) is the

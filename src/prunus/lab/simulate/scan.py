@@ -110,7 +110,7 @@ def scan_row(row: Row, rng: np.random.Generator, settings: ScanSettings) -> Scan
         clouds.append(nominal.apply(seen))
         owners.append(whose[~hidden])
     return _labelled(np.concatenate(clouds), np.concatenate(owners), row, tuple(views), focal,
-                     rng, settings)  # fmt: skip
+                     rng=rng, settings=settings)  # fmt: skip
 
 
 def above(tree: Skeleton, row: int) -> Bools:
@@ -173,6 +173,7 @@ def _labelled(
     row: Row,
     views: tuple[View, ...],
     focal: float,
+    *,
     rng: np.random.Generator,
     settings: ScanSettings,
 ) -> Scan:

@@ -37,7 +37,7 @@ def matched(
     reach = np.rint(_between(noise2(rng, depth.shape, BLOB) ** 2, settings.reach)).astype(np.int64)
     depth, owner = fatten(depth, owner, reach)
     chance = rng.random(depth.shape) / max(settings.flying, 1e-9)
-    fly(depth, owner, 0.03, chance, rng.random(depth.shape) ** 3)
+    fly(depth, 0.03, chance, rng.random(depth.shape) ** 3)
     return _disparity_errs(rng, depth, settings, rig), owner
 
 

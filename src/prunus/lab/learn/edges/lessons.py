@@ -75,6 +75,7 @@ def lessons_from(
     seed: int,
     jobs: int,
     cover: Cover,
+    *,
     watch: Watch[Any],
     rng: np.random.Generator,
 ) -> Lessons:

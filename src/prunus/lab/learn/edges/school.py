@@ -58,7 +58,7 @@ def school(
         recipe.network()
     rng = np.random.default_rng(course.seed)
     cover = Parameters.paper().superpoints
-    lessons = lessons_from(sources, course.scans, course.seed, jobs, cover, watch, rng)
+    lessons = lessons_from(sources, course.scans, course.seed, jobs, cover, watch=watch, rng=rng)
     training, validation, test = lessons.sets
     report: dict[str, Any] = {
         "seed": course.seed, "epochs": recipe.epochs, "trees": lessons.trees,

@@ -69,7 +69,8 @@ def _grow_stem(plan: _Plan) -> Ints:
     length = even(rng, plan.form.stem)
     lean = math.radians(even(rng, (-12, 12))) * np.array([1.0, rng.normal(0, 0.5), 0.0])
     radius = log_even(rng, plan.ranges.stout)
-    return _limb(plan, 0, UP + lean, length, radius, radius * plan.taper, 0.0, Label.TRUNK)
+    radii = radius, radius * plan.taper
+    return _limb(plan, 0, UP + lean, length, radii, rise=0.0, label=Label.TRUNK)
 
 
 def _grow_limbs(plan: _Plan, stem: Ints) -> list[Ints]:
@@ -125,7 +126,8 @@ def _child(plan: _Plan, row: int, heading: Floats, length: float, rise: float) -
     tip = even(rng, ranges.tip_radius)
     usual = even(rng, ranges.child_radius) * wood.radius[row]
     foot = max(min(usual, tip + 0.025 * length), min(tip, 0.9 * wood.radius[row]))
-    return _limb(plan, row, heading, length, foot, min(tip, foot), rise, Label.SIDE_BRANCH)
+    radii = foot, min(tip, foot)
+    return _limb(plan, row, heading, length, radii, rise=rise, label=Label.SIDE_BRANCH)
 
 
 def _limb(
@@ -133,8 +135,8 @@ def _limb(
     row: int,
     heading: Floats,
     length: float,
-    foot: float,
-    tip: float,
+    radii: tuple[float, float],
+    *,
     rise: float,
     label: Label,
 ) -> Ints:
@@ -143,7 +145,7 @@ def _limb(
     way = along(length)
     aside = np.column_stack([wood.wander(len(way), plan.wander) for _ in range(3)])
     lift = np.outer(rise * way / max(length, STEP), UP)
-    return wood.grow(row, label, unit(heading) + aside + lift, length, (foot, tip))
+    return wood.grow(row, label, unit(heading) + aside + lift, length, radii)
 
 
 def _outward(plan: _Plan, row: int, angle: float) -> Floats:
