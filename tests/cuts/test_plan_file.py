@@ -1,8 +1,11 @@
 """`prunus cuts` from files: with the cloud, with the cloud found again, without it."""
 
+import csv
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,6 +25,7 @@ from prunus.io.skeletons.skeleton_file import (
 )
 from prunus.io.skeletons.swc import write_swc
 from prunus.model import FRAMES, RigidMotion
+from prunus.model.branches import branch_of_rows, branches
 from prunus.paper.confidence import ConstantScorer
 from prunus.params import Parameters
 from tests.conftest import simulated
@@ -39,7 +43,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     home = tmp_path_factory.mktemp("cuts")
     xyz = cloud.to_input.apply(cloud.xyz) - truth.xyz[0]
     write_cloud(home / "tree.ply", xyz @ FRAMES["optical"])
-    do(Task(home / "tree.ply", home / "out"), Options((0.0, 0.0, 0.0), report=False))
+    do(Task(home / "tree.ply", home / "out"), Options((0.0, 0.0, 0.0), report=False, traits=True))
     return home
 
 
@@ -75,11 +79,37 @@ def test_a_cloud_is_skeletonized_as_it_was_asked_for(plan: PlanFile, folder: Pat
 
 
 @pytest.mark.parametrize("name", ["skeleton.json", "refined.json"])
-def test_a_skeleton_finds_its_cloud_and_gives_nearly_the_same_plan(
+def test_a_skeleton_finds_its_cloud_and_gives_the_plan_of_the_cloud(
     name: str, plan: PlanFile, folder: Path
 ) -> None:
     again = cut_file(Source(folder / "out" / name), RULES)
     assert again.input == plan.input and again.skeleton == name
+    assert again.skeleton_sha256 == plan.skeleton_sha256
+    assert again.left == plan.left
+    for cut, other in zip(plan.cuts, again.cuts, strict=True):
+        assert cut.confidence == pytest.approx(other.confidence, abs=2e-4)
+        assert cut.needs_review == other.needs_review and len(cut.reasons) == len(other.reasons)
+        ours, theirs = (one.model_dump(exclude={"confidence", "reasons"}) for one in (cut, other))
+        for key in ours:
+            assert _numbers(ours[key]) == pytest.approx(_numbers(theirs[key]), abs=2e-5), key
+
+
+def _numbers(value: Any) -> Any:
+    """The numbers in a record, or what else it is."""
+    if isinstance(value, dict):
+        value = tuple(value.values())
+    if isinstance(value, tuple):
+        return [number for one in value for number in np.ravel(one).tolist()]
+    return value
+
+
+def test_a_skeleton_without_its_refined_tree_gives_nearly_the_same_plan(
+    plan: PlanFile, folder: Path, tmp_path: Path
+) -> None:
+    for name in ("tree.ply", "out/skeleton.json"):
+        shutil.copy(folder / name, tmp_path)
+    again = cut_file(Source(tmp_path / "skeleton.json"), RULES)
+    assert any("refined anew" in note for note in again.notes)
     ours = {cut.id: np.array(cut.point) for cut in plan.cuts}
     theirs = {cut.id: np.array(cut.point) for cut in again.cuts}
     both = ours.keys() & theirs.keys()
@@ -97,6 +127,23 @@ def test_a_skeleton_tells_how_likely_its_branches_are(
     assert len(both) > 3
     assert all(abs(here[one] - there[one]) < 0.15 for one in both)
     assert max(here[one] for one in both) > 0.3
+
+
+def test_a_branch_has_one_number_in_every_file(plan: PlanFile, folder: Path) -> None:
+    text = (folder / "out" / "traits.csv").read_text()
+    rows = list(csv.DictReader(text.splitlines()))
+    numbers = {row["name"]: int(row["branch"]) for row in rows}
+    assert list(numbers.values()) == list(range(len(rows)))
+    for name in ("skeleton.json", "refined.json"):
+        skeleton, record = read_record(folder / "out" / name)
+        assert record.branch == branch_of_rows(branches(skeleton), len(skeleton)).tolist()
+        told = record.branches or (record.trust.branches if record.trust else [])
+        assert {one.name: one.number for one in told} == numbers
+        for one in told:
+            assert {record.branch[node] for node in one.nodes[1:]} == {one.number}
+    assert plan.cuts and plan.left
+    for one in (*plan.cuts, *plan.left):
+        assert one.branch_number == numbers[one.branch]
 
 
 def test_without_its_cloud_every_cut_is_for_a_person(tmp_path: Path) -> None:

@@ -413,7 +413,7 @@ def test_a_skeleton_with_a_base_by_hand_is_found_again(
 
 def test_a_skeleton_that_the_chain_does_not_give_is_told(told: Path, tmp_path: Path) -> None:
     record = json.loads(told.read_text())
-    record["label"][-1] = "trunk"
+    record["label"][-1], record["branch"] = "trunk", None
     told.write_text(json.dumps(record))
     with Work.open(told, tmp_path / "again", QUICK) as work:
         assert "the chain gives another skeleton than the file has" in " ".join(work.notes)

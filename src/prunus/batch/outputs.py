@@ -12,7 +12,12 @@ from prunus.frames.scan import Scan
 from prunus.io.skeletons.export import write_ply
 from prunus.io.skeletons.named import named_branches
 from prunus.io.skeletons.plans import read_plan
-from prunus.io.skeletons.skeleton_file import read_skeleton, sha256_of, write_skeleton
+from prunus.io.skeletons.skeleton_file import (
+    nullable,
+    read_skeleton,
+    sha256_of,
+    write_skeleton,
+)
 from prunus.io.skeletons.swc import write_swc
 from prunus.io.skeletons.trust import trust_record
 from prunus.io.tables import csv_bytes, parquet_bytes, without_nan
@@ -67,6 +72,7 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
     evidence = {
         "score": result.score,
         "input": scan.record,
+        "read": {"frame": scan.asked[0], "unit": scan.asked[1]},
         "params": result.params.model_dump(),
         "seed": result.seed,
         "version_of_prunus": __version__,
@@ -81,6 +87,8 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
         folder / "refined.json",
         fine,
         branches=names,
+        radius_error=nullable(result.refined.radius_error),
+        seen=result.refined.seen.tolist(),
         refines=sha256_of(result.skeleton),
         **evidence,
     )

@@ -35,6 +35,7 @@ class Cut:
 
     id: str
     branch: str
+    branch_number: int
     rule: str
     because: str
     point: Point
@@ -127,9 +128,9 @@ def _cut(
         reasons += doubts_around(limbs, demand, gone, points.cut, way, rules)
     length, volume = _removed(tree.skeleton, gone, demand)
     return Cut(
-        f"{demand.rule}:{limb.name.replace(' ', '-')}", limb.name, demand.rule, demand.because,
-        _point(point), _point(normal), _point(heading), way, evidence.diameter, evidence.doubt,
-        demand.stub, along, length, volume, confidence, tuple(reasons), evidence,
+        f"{demand.rule}:{limb.name.replace(' ', '-')}", limb.name, limb.number, demand.rule,
+        demand.because, _point(point), _point(normal), _point(heading), way, evidence.diameter,
+        evidence.doubt, demand.stub, along, length, volume, confidence, tuple(reasons), evidence,
     )  # fmt: skip
 
 

@@ -20,7 +20,8 @@ from prunus.io.original import original_of
 from prunus.io.skeletons.named import names_of
 from prunus.io.skeletons.plans import PlanFile
 from prunus.io.skeletons.skeleton_file import (
-    InputRecord,
+    SkeletonFile,
+    known,
     read_record,
     read_skeleton,
     sha256_of,
@@ -29,6 +30,7 @@ from prunus.model import FRAMES, Floats, Label, PointCloud, RigidMotion, Skeleto
 from prunus.names import as_text
 from prunus.params import Parameters
 from prunus.pipeline import skeletonize
+from prunus.refine.radii import Unknown
 from prunus.refine.refined import Refined, refined
 from prunus.result import REFINED_WITH
 
@@ -79,8 +81,9 @@ class Source:
 def cut_file(source: Source, rules: CutRules) -> PlanFile:
     """The plan for a skeleton, or for a cloud, which is skeletonized first.
 
-    The cloud of a skeleton is looked for (see `io.original`); without it the skeleton is planned on
-    as it is, and every cut needs review. Raises PrunusError as the readers do.
+    The cloud of a skeleton is looked for (see `io.original`), and its refined tree beside it: they
+    give the plan that the cloud gave. Without a cloud every cut needs review. Raises PrunusError as
+    the readers do.
     """
     if source.is_skeleton:
         return _on_skeleton(source, rules)
@@ -102,49 +105,90 @@ def _on_skeleton(source: Source, rules: CutRules) -> PlanFile:
     if len(skeleton) == 1:
         raise NoTreeError(f"{path}: holds a base alone; expected a tree to cut")
     notes = [] if record is None else list(record.review or ())
-    sha256 = (record and record.refines) or sha256_of(skeleton)
     told: dict[str, Any] = {
         "skeleton": as_text(path.name),
-        "skeleton_sha256": sha256,
+        "skeleton_sha256": (record and record.refines) or sha256_of(skeleton),
         "notes": notes,
     }
-    named = None if record is None else record.named
-    likely = None if record is None else record.likely
+    skeleton, record = _refined_beside(path, skeleton, record) or (skeleton, record)
     scan = None
     try:
-        scan = _scan_of(source, None if record is None else record.input)
+        scan = _scan_of(source, record)
     except PrunusError as error:
         if source.scans is not None:
             raise
         notes.append(f"no cloud: {error}")
     if scan is None:
         to_file = RigidMotion(_upright(skeleton, source.frame), np.zeros(3)).inverse()
-        in_house = skeleton.moved(to_file.inverse())
-        plan = plan_cuts(in_house, None, rules, names_of(in_house, named or {}), likely)
-        return plan_file(plan, to_file, **told)
-    cloud = scan.cloud
-    in_house = skeleton.moved(cloud.to_input.inverse())
-    tree, names = _refined(in_house, cloud, likely), names_of(in_house, named or {})
-    plan = plan_cuts(tree, cloud.xyz, rules, names)
-    notes += scan.notes
-    return plan_file(plan, cloud.to_input, input=scan.record, **told)
+    else:
+        to_file, told["input"] = scan.cloud.to_input, scan.record
+        notes += scan.notes
+    in_house = skeleton.moved(to_file.inverse())
+    cloud = None if scan is None else scan.cloud
+    tree = _as_told(in_house, record) or _as_seen(in_house, record, cloud, notes)
+    names = names_of(in_house, {} if record is None else record.named)
+    plan = plan_cuts(tree, None if cloud is None else cloud.xyz, rules, names, _likely(record))
+    return plan_file(plan, to_file, **told)
 
 
-def _scan_of(source: Source, record: InputRecord | None) -> Scan:
-    if record is None:
+def _refined_beside(
+    path: Path, skeleton: Skeleton, record: SkeletonFile | None
+) -> tuple[Skeleton, SkeletonFile] | None:
+    """The refined tree that lies beside a skeleton; None where there is none, or that of another.
+
+    So that skeleton.json gives the plan that the scan gave.
+    """
+    beside = path.with_name("refined.json")
+    if record is None or record.refines is not None or not beside.exists():
+        return None
+    fine, own = read_record(beside)
+    return (fine, own) if own.refines == sha256_of(skeleton) else None
+
+
+def _scan_of(source: Source, whole: SkeletonFile | None) -> Scan:
+    """The scan of a skeleton, read as it was when that was made, unless asked otherwise."""
+    if whole is None or whole.input is None:
         raise PrunusError(f"{source.path}: does not say of which cloud it is")
-    found = original_of(record, source.path.parent, source.scans)
-    return open_scan(found, source.frame, source.unit)
+    found = original_of(whole.input, source.path.parent, source.scans)
+    if whole.read is None or source.frame != "auto" or source.unit is not None:
+        return open_scan(found, source.frame, source.unit)
+    return open_scan(found, whole.read.frame, whole.read.unit)
 
 
-def _refined(skeleton: Skeleton, cloud: PointCloud, likely: Floats | None) -> Refined:
-    """A skeleton refined with the points near it, both in the house frame; a fine one as it is."""
-    if len(skeleton) > 1 and np.median(skeleton.lengths[1:]) < FINE:
+def _as_told(skeleton: Skeleton, record: SkeletonFile | None) -> Refined | None:
+    """A refined tree as its file has it, house frame; None where it holds none."""
+    if record is None or record.radius_error is None or record.seen is None:
+        return None
+    return Refined(
+        skeleton,
+        radius_error=np.array(known(record.radius_error)),
+        unknown=np.where(np.isfinite(skeleton.radius), Unknown.KNOWN, Unknown.FEW_POINTS),
+        seen=np.array(record.seen),
+        likely=record.likely,
+    )
+
+
+def _as_seen(
+    skeleton: Skeleton, record: SkeletonFile | None, cloud: PointCloud | None, notes: list[str]
+) -> Refined | Skeleton:
+    """A skeleton refined with the points near it, both in the house frame; a fine one as it is.
+
+    Without a cloud it is what it is.
+    """
+    if cloud is None:
+        return skeleton
+    likely = _likely(record)
+    if np.median(skeleton.lengths[1:]) < FINE:
         seen = np.diff(within(cloud.xyz, skeleton.xyz, SEEN)[0]) > 0
         return replace(
             as_it_is(skeleton, likely), radius_error=np.full(len(seen), np.nan), seen=seen
         )
+    notes.append("refined anew with the points near it: a plan of the scan differs by millimetres")
     return refined(skeleton, _own(cloud, skeleton), likely)
+
+
+def _likely(record: SkeletonFile | None) -> Floats | None:
+    return None if record is None else record.likely
 
 
 def _own(cloud: PointCloud, skeleton: Skeleton) -> PointCloud:
@@ -183,6 +227,7 @@ def _record(cut: Cut, to_file: RigidMotion) -> dict[str, Any]:
     return {
         "id": cut.id,
         "branch": cut.branch,
+        "branch_number": cut.branch_number,
         "rule": cut.rule,
         "because": cut.because,
         "point": _rounded(to_file.apply(cut.point), 5),

@@ -49,6 +49,7 @@ class Left:
     rule: str
     branch: str
     why: str
+    branch_number: int | None = None
 
 
 Verdict = Demand | Left
@@ -103,13 +104,13 @@ def height(limbs: Limbs, rules: CutRules, down: Down) -> list[Verdict]:
     verdicts: list[Verdict] = []
     for limb in limbs.with_label(Label.LEADER):
         if _is_gone(limb, down.rows):
-            verdicts.append(Left("height", limb.name, "comes down by another rule"))
+            verdicts.append(Left("height", limb.name, "comes down by another rule", limb.number))
             continue
         foot = _foot_on_support(limbs, limb)
         over = float(limb.xyz[:, 2].max()) - foot
         if over <= rules.height.over + GRID:
             why = f"{over:.2f} m over the support, not over {rules.height.over:g} m"
-            verdicts.append(Left("height", limb.name, why))
+            verdicts.append(Left("height", limb.name, why, limb.number))
             continue
         because = f"{over:.2f} m over the support, over {rules.height.over:g} m"
         along = _rises_to(limb, foot + rules.height.to)
@@ -129,7 +130,7 @@ def side_branches(limbs: Limbs, rules: CutRules, down: Down) -> list[Verdict]:
         if why is None and limb.bark + rules.side_branches.stub >= limb.along[-1]:
             why = "does not stand clear of its leader"
         if why is not None:
-            verdicts.append(Left("side_branches", limb.name, why))
+            verdicts.append(Left("side_branches", limb.name, why, limb.number))
             continue
         because, doubts = _long(limb.reach, limit, rules.review.near_limit)
         if _is_gone(limb, down.rows):
@@ -250,15 +251,15 @@ def _kept_by_spacing(
     closest: float,
 ) -> Left:
     """Why a leader stays: its nearest neighbour goes, or is far enough."""
-    name = leaders[number].name
+    leader = leaders[number]
     own = [(apart, first + second - number) for apart, first, second in pairs
            if number in (first, second) and math.isfinite(apart)]  # fmt: skip
     if not own:
-        return Left("spacing", name, "no other leader stands beside it")
+        return Left("spacing", leader.name, "no other leader stands beside it", leader.number)
     apart, other = own[0]
     if apart >= closest:
         why = f"{apart:.2f} m from {leaders[other].name} at mid height, not under {closest:g} m"
     else:
         gone = next(leaders[n].name for near, n in own if near < closest and n in goes)
         why = f"{gone}, too close to it, goes"
-    return Left("spacing", name, why)
+    return Left("spacing", leader.name, why, leader.number)

@@ -19,12 +19,16 @@ from prunus.model import FRAMES, Floats, PointCloud
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """A cloud in the house frame, the file it came from, and notes on how it was read."""
+    """A cloud in the house frame, the file it came from, and notes on how it was read.
+
+    `frame` is what was found; `asked`: frame and unit as they were asked for.
+    """
 
     cloud: PointCloud
     file: FileCloud
     frame: str
     notes: list[str]
+    asked: tuple[str, str | None] = ("auto", None)
 
     @property
     def record(self) -> dict[str, Any]:
@@ -47,7 +51,8 @@ def open_scan(path: str | Path, frame: str = "auto", unit: str | None = None) ->
     file = read_file(path_of(path), unit)
     stance = _stance(file.xyz, frame)
     cloud = PointCloud.from_xyz(file.xyz, stance.frame, file.rgb, stance.turn)
-    return Scan(cloud, file, stance.frame, [*file.notes, *stance.notes])
+    notes = [*file.notes, *stance.notes]
+    return Scan(cloud, file, stance.frame, notes, asked=(frame, unit))
 
 
 def read_cloud(path: str | Path, frame: str = "auto", unit: str | None = None) -> PointCloud:

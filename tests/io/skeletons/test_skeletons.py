@@ -67,13 +67,15 @@ def test_ply_holds_coloured_edges_and_named_columns(tmp_path: Path) -> None:
     ("change", "message"),
     [
         ({"format": "other"}, "format: "),
-        ({"version": 2}, "version: "),
+        ({"version": 3}, "version: "),
         ({"label": ["trunk", "twig"]}, r"label\.1: "),
         ({"parent": [-1]}, "parent: 1 entries; expected one for each of the 2 nodes"),
         ({"parent": [-1, 1]}, r"parent\[1\] is 1"),
         ({"nodes": [[0, 0], [1, 1]]}, r"nodes\.0"),
         ({"nodes": []}, "nodes: "),
-        ({"colour": "red"}, "colour: unknown field; expected one of branches, conf"),
+        ({"branch": [-1, 3]}, "branch: 3 at node 1; expected 0, by parents and labels"),
+        ({"seen": [True]}, "seen: 1 entries"),
+        ({"colour": "red"}, "colour: unknown field; expected one of branch, branches, conf"),
     ],
 )
 def test_a_file_that_lies_is_refused_by_field(tmp_path: Path, change: dict, message: str) -> None:
@@ -82,3 +84,14 @@ def test_a_file_that_lies_is_refused_by_field(tmp_path: Path, change: dict, mess
     path.write_text(json.dumps(json.loads(path.read_text()) | change))
     with pytest.raises(PrunusError, match=f"s.json: {message}"):
         read_skeleton(path)
+
+
+def test_a_file_of_version_1_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "s.json"
+    write_skeleton(path, tree())
+    held = json.loads(path.read_text())
+    for name in ("branch", "radius_error", "seen", "read"):
+        del held[name]
+    path.write_text(json.dumps(held | {"version": 1}))
+    skeleton, record = read_record(path)
+    assert skeleton.parent.tolist() == tree().parent.tolist() and record.version == 1

@@ -23,12 +23,13 @@ def named_branches(skeleton: Skeleton, names: Iterable[str], likely: Floats) -> 
     """All branches of a skeleton, as `refined.json` has them; `likely` (M,): that each is right."""
     return [
         BranchName(
+            number=number,
             name=name,
             label=cast(Word, branch.label.word),
             nodes=branch.rows.tolist(),
             trust=_known(likely[branch.rows[1]]),
         )
-        for name, branch in zip(names, branches(skeleton), strict=True)
+        for number, (name, branch) in enumerate(zip(names, branches(skeleton), strict=True))
     ]
 
 

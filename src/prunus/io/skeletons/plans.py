@@ -48,6 +48,9 @@ class CutRecord(_Record):
 
     id: str = Field(description="rule and branch; the same plan gives the same")
     branch: str = Field(description="by label, numbered along the row: `side branch 7`")
+    branch_number: Annotated[int, Field(ge=0)] | None = Field(
+        None, description="as `branch` of skeleton.json has it; null = not told"
+    )
     rule: Literal["spacing", "height", "side_branches"]
     because: str = Field(description="why the rule asks for it")
     point: Point = Field(description="where the blade meets the axis of the branch")
@@ -74,6 +77,7 @@ class LeftRecord(_Record):
 
     rule: str
     branch: str
+    branch_number: Annotated[int, Field(ge=0)] | None = None
     why: str
 
 
@@ -83,7 +87,7 @@ class PlanFile(_Record):
     model_config = ConfigDict(title="prunus pruning plan")
 
     format: Literal["prunus-plan"] = "prunus-plan"
-    version: Literal[1] = 1
+    version: Literal[1, 2] = Field(2, description="2 has all that 1 has, and more")
     frame: Literal["file"] = Field("file", description="all is in the frame of the input file")
     unit: Literal["m"] = "m"
     cuts: list[CutRecord]

@@ -17,6 +17,7 @@ from prunus.errors import PrunusError
 from prunus.files.reading import in_words, record_in
 from prunus.files.safely import path_of, write_bytes
 from prunus.model import Floats, Label, Skeleton
+from prunus.model.branches import branch_of_rows, branches
 
 Word = Literal["trunk", "support", "leader", "side_branch"]
 Point = tuple[float, float, float]
@@ -39,9 +40,17 @@ class InputRecord(_Record):
     points: int
 
 
+class ReadRecord(_Record):
+    """How the input was asked to be read."""
+
+    frame: str = Field("auto", description="as --frame: docs/frames.md")
+    unit: str | None = Field(None, description="as --unit; null = as the file says")
+
+
 class BranchName(_Record):
     """A branch and how it is called."""
 
+    number: Row | None = Field(None, description="the same in every file, see `branch`")
     name: str = Field(
         pattern=r"^[\w ]{1,80}$",
         description="as in the report: leader 3 is the third from the left",
@@ -71,7 +80,7 @@ class SkeletonFile(_Record):
     model_config = ConfigDict(title="prunus skeleton")
 
     format: Literal["prunus-skeleton"] = "prunus-skeleton"
-    version: Literal[1] = 1
+    version: Literal[1, 2] = Field(2, description="2 has all that 1 has, and more")
     frame: Literal["file"] = Field("file", description="nodes are in the frame of the input file")
     unit: Literal["m"] = "m"
     nodes: list[Point] = Field(min_length=1, description="x, y, z; the base first")
@@ -82,6 +91,15 @@ class SkeletonFile(_Record):
     )
     radius: list[Annotated[float, Field(ge=0)] | None] = Field(description="null = unknown")
     superpoint: list[RowOrNone] = Field(description="index of the superpoint; -1 = none")
+    branch: list[RowOrNone] | None = Field(
+        None,
+        description="number of the branch of the edge: the same before and after refining, and in "
+        "plans, traits and meshes; -1 for the base; null = counted as branches leave",
+    )
+    radius_error: list[Annotated[float, Field(ge=0)] | None] | None = Field(
+        None, description="one standard deviation of the radius; null = unknown"
+    )
+    seen: list[bool] | None = Field(None, description="whether the scan has points there")
     score: float | None = Field(
         None, description="SkelScore of the paper's method; null where the method has none"
     )
@@ -96,6 +114,7 @@ class SkeletonFile(_Record):
         None, description="sha256 of the skeleton that was refined to this one: docs/files.md"
     )
     input: InputRecord | None = None
+    read: ReadRecord | None = None
     params: dict[str, Any] | None = None
     seed: int | None = None
     version_of_prunus: str | None = None
@@ -116,7 +135,9 @@ class SkeletonFile(_Record):
         return likely
 
 
-EVIDENCE = {name for name, field in SkeletonFile.model_fields.items() if field.default is None}
+EVIDENCE = {name for name, field in SkeletonFile.model_fields.items() if field.default is None} - {
+    "branch"
+}
 """What a file may say beside the skeleton."""
 
 
@@ -133,9 +154,10 @@ def write_skeleton(path: str | Path, skeleton: Skeleton, **evidence: Any) -> Non
             nodes=skeleton.xyz.tolist(),
             parent=skeleton.parent.tolist(),
             label=[cast(Word, Label(label).word) for label in skeleton.label],
-            confidence=_nullable(skeleton.confidence),
-            radius=_nullable(skeleton.radius),
+            confidence=nullable(skeleton.confidence),
+            radius=nullable(skeleton.radius),
             superpoint=skeleton.superpoint.tolist(),
+            branch=branch_of_rows(branches(skeleton), len(skeleton)).tolist(),
             **evidence,
         )
     rows = record.model_dump()
@@ -153,20 +175,24 @@ def read_record(path: str | Path) -> tuple[Skeleton, SkeletonFile]:
             record.nodes,
             record.parent,
             [Label.from_word(word) for word in record.label],
-            confidence=_known(record.confidence),
-            radius=_known(record.radius),
+            confidence=known(record.confidence),
+            radius=known(record.radius),
             superpoint=record.superpoint,
         )
     except ValueError as error:
         raise PrunusError(f"{path}: {error}") from error
+    _check_branches(record, skeleton, path)
     return skeleton, record
 
 
 def _check_lengths(record: SkeletonFile, path: Path) -> None:
     """Raise where a column does not have an entry a node, or a branch a node that is none."""
     count = len(record.nodes)
-    columns = ("parent", "label", "confidence", "radius", "superpoint")
-    entries = {name: len(getattr(record, name)) for name in columns}
+    columns = (
+        "parent", "label", "confidence", "radius", "superpoint", "branch", "radius_error", "seen",
+    )  # fmt: skip
+    held = {name: getattr(record, name) for name in columns}
+    entries = {name: len(column) for name, column in held.items() if column is not None}
     if record.trust is not None:
         entries["trust.edges"] = len(record.trust.edges)
     for name, found in entries.items():
@@ -179,6 +205,20 @@ def _check_lengths(record: SkeletonFile, path: Path) -> None:
             raise PrunusError(
                 f"{path}: {branch.name}: node {max(branch.nodes)}; expected 0 to {count - 1}"
             )
+
+
+def _check_branches(record: SkeletonFile, skeleton: Skeleton, path: Path) -> None:
+    """Raise where branches have other numbers than those that parents and labels give them."""
+    numbers = branch_of_rows(branches(skeleton), len(skeleton)).tolist()
+    if record.branch is None or record.branch == numbers:
+        return
+    node = next(
+        k for k, (one, two) in enumerate(zip(record.branch, numbers, strict=True)) if one != two
+    )
+    raise PrunusError(
+        f"{path}: branch: {record.branch[node]} at node {node}; expected {numbers[node]}, by "
+        "parents and labels (leave `branch` out to have them counted anew)"
+    )
 
 
 def sha256_of(skeleton: Skeleton) -> str:
@@ -201,11 +241,13 @@ def read_skeleton(path: str | Path) -> Skeleton:
     return read_swc(path) if path.suffix.lower() == ".swc" else read_record(path)[0]
 
 
-def _nullable(values: Floats) -> list[float | None]:
+def nullable(values: Floats) -> list[float | None]:
+    """Numbers as JSON has them: null for NaN."""
     return [None if np.isnan(value) else value for value in values.tolist()]
 
 
-def _known(values: list[float | None]) -> list[float]:
+def known(values: list[float | None]) -> list[float]:
+    """The other way round."""
     return [np.nan if value is None else value for value in values]
 
 

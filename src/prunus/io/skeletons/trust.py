@@ -16,9 +16,12 @@ def trust_record(skeleton: Skeleton, trust: Trust | None) -> TrustRecord | None:
     found = branches(skeleton)
     names = branch_names(skeleton, found)
     rows = [
-        {"name": name, "label": one.label.word, "nodes": one.rows.tolist(), "trust": likely}
-        for name, one, likely in zip(names, found, _rounded(trust.branch), strict=True)
-    ]
+        {"number": number, "name": name, "label": one.label.word, "nodes": one.rows.tolist(),
+         "trust": likely}
+        for number, (name, one, likely) in enumerate(
+            zip(names, found, _rounded(trust.branch), strict=True)
+        )
+    ]  # fmt: skip
     edges = [None, *_rounded(trust.edge[1:])]
     return TrustRecord.model_validate(
         {"tree": round(trust.tree, DIGITS), "edges": edges, "branches": rows}
