@@ -7,9 +7,10 @@ import pytest
 
 from prunus.editing import RemoveEdge, SetStatus
 from prunus.errors import PrunusError
+from prunus.files.work_folder import JOURNAL
 from prunus.params import Parameters
 from prunus.session import status_of
-from prunus.session.journal import NAME, Head, append, begin, read_journal, resume
+from prunus.session.journal import Head, append, begin, read_journal, resume
 from prunus.session.timeline import Timeline
 
 HEAD = Head.model_validate(
@@ -31,7 +32,7 @@ MOVES = [RemoveEdge(3), "undo", "redo", RemoveEdge(4), SetStatus(True)]
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
     """A journal with all kinds of lines."""
-    path = tmp_path / NAME
+    path = tmp_path / JOURNAL
     end = begin(path, HEAD)
     for move in MOVES:
         _, end = append(path, end, move, "ff")
@@ -121,9 +122,9 @@ def test_binary_dirt_is_told_too(path: Path) -> None:
 
 
 def test_no_journal_and_an_empty_one_are_none(tmp_path: Path) -> None:
-    assert read_journal(tmp_path / NAME) is None
-    (tmp_path / NAME).touch()
-    assert read_journal(tmp_path / NAME) is None
+    assert read_journal(tmp_path / JOURNAL) is None
+    (tmp_path / JOURNAL).touch()
+    assert read_journal(tmp_path / JOURNAL) is None
 
 
 def test_what_another_process_wrote_is_not_written_over(path: Path) -> None:
@@ -138,7 +139,7 @@ def test_what_another_process_wrote_is_not_written_over(path: Path) -> None:
 
 
 def test_the_status_is_told_by_the_acts_that_stand(tmp_path: Path) -> None:
-    path = tmp_path / NAME
+    path = tmp_path / JOURNAL
     assert status_of(tmp_path) == "new"
     end = begin(path, HEAD)
     assert status_of(tmp_path) == "new"

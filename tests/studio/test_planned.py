@@ -9,6 +9,7 @@ import pytest
 
 from prunus.editing import AddPath, Relabel, RemoveBranch, State, branch_names
 from prunus.errors import PrunusError
+from prunus.files.work_folder import PLAN
 from prunus.geometry.near import away_from
 from prunus.io.clouds.cloud_file import write_cloud
 from prunus.io.skeletons.plans import read_plan, write_plan
@@ -17,7 +18,7 @@ from prunus.lab.simulate import simulate_scan
 from prunus.model import Label
 from prunus.pipeline import skeletonize
 from prunus.session import Settings, Work
-from prunus.studio.planned import PLAN, _vouched, file_of, planned, save, told_of_file
+from prunus.studio.planned import _vouched, file_of, planned, save, told_of_file
 from prunus.studio.shelf import Item
 from prunus.studio.tree import Tree
 from tests.conftest import simulated

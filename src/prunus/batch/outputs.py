@@ -8,6 +8,7 @@ from prunus import __version__
 from prunus.cuts import plan_cuts
 from prunus.errors import PrunusError
 from prunus.files.safely import write_bytes, written_together
+from prunus.files.work_folder import PARAMS, PLAN, REFINED, REPORT, SKELETON
 from prunus.frames.scan import Scan
 from prunus.io.skeletons.export import write_ply
 from prunus.io.skeletons.named import named_branches
@@ -28,14 +29,13 @@ from prunus.traits.definitions import BRANCH_TRAITS, TREE_TRAITS
 from prunus.traits.traits import branch_traits, tree_traits
 
 SOMETIMES = (
-    "report.html",
+    REPORT,
     "traits.csv",
     "traits.parquet",
     "tree_traits.csv",
     "tree_traits.parquet",
 )
 """What only some runs write: that of an older run goes, or it would be taken for the new tree's."""
-PLAN = "plan.json"
 
 
 def write_all(
@@ -45,7 +45,7 @@ def write_all(
     if folder.exists() and not folder.is_dir():
         raise PrunusError(f"{folder}: is a file; expected a folder to write to")
     older = [*SOMETIMES, *plan_of_older(folder, result)]
-    with written_together(folder, "skeleton.json", older) as together:
+    with written_together(folder, SKELETON, older) as together:
         write_outputs(together, result, scan, report)
         return write_traits(together, result, scan.file.name) if traits else []
 
@@ -54,7 +54,7 @@ def plan_of_older(folder: Path, result: Result) -> list[str]:
     """plan.json, where it is of the skeleton that stands in the folder, and the new is another."""
     try:
         planned = read_plan(folder / PLAN).skeleton_sha256
-        replaced = planned == sha256_of(read_skeleton(folder / "skeleton.json"))
+        replaced = planned == sha256_of(read_skeleton(folder / SKELETON))
     except PrunusError:  # there is no plan, or none of a skeleton of ours
         return []
     return [PLAN] if replaced and planned != sha256_of(result.skeleton) else []
@@ -65,10 +65,10 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
     if report:
         plan = plan_cuts(result.refined, result.scan.xyz)
         page = report_page(result, scan.file.name, [*scan.notes, *result.notes], plan)
-        write_bytes(folder / "report.html", as_text(page).encode())
+        write_bytes(folder / REPORT, as_text(page).encode())
     write_swc(folder / "skeleton.swc", result.skeleton)
     write_ply(folder / "skeleton.ply", result.skeleton)
-    write_bytes(folder / "params.toml", result.params.to_toml().encode())
+    write_bytes(folder / PARAMS, result.params.to_toml().encode())
     evidence = {
         "score": result.score,
         "input": scan.record,
@@ -80,11 +80,11 @@ def write_outputs(folder: Path, result: Result, scan: Scan, report: bool) -> Non
     fine = result.refined.skeleton.moved(result.graph.superpoints.cloud.to_input)
     trust = trust_record(result.in_house, result.trust)
     write_skeleton(
-        folder / "skeleton.json", result.skeleton, trust=trust, review=result.review, **evidence
+        folder / SKELETON, result.skeleton, trust=trust, review=result.review, **evidence
     )
     names = named_branches(fine, result.refined.names, result.refined.likely)
     write_skeleton(
-        folder / "refined.json",
+        folder / REFINED,
         fine,
         branches=names,
         radius_error=nullable(result.refined.radius_error),

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from prunus.batch.outputs import write_all
 from prunus.errors import PrunusError, describe
+from prunus.files.work_folder import SKELETON
 from prunus.frames.scan import Scan, open_scan
 from prunus.io.inputs import clouds_in, is_one, names_of
 from prunus.io.records import EdgesByLabel, TreeRecord
@@ -165,7 +166,7 @@ def _record(
         file=as_text(task.path),
         ok=True,
         error=None,
-        skeleton=as_text(task.folder / "skeleton.json"),
+        skeleton=as_text(task.folder / SKELETON),
         score=result.score,
         points=len(scan.cloud),
         superpoints=len(graph.xyz),

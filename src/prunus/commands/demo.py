@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from prunus.commands.options import OutputFolder, Seed
+from prunus.files.work_folder import SCAN
 
 if TYPE_CHECKING:
     from prunus.commands.progress import Waiting
@@ -29,5 +30,5 @@ def demo(
     truth = simulated_scan(output, seed)
     base = tuple(truth.xyz[0].tolist())
     options = Options(base, "z-up", seed=seed)
-    report_on(waiting, [Task(output / "scan.ply", output)], [], options, False, 1)
+    report_on(waiting, [Task(output / SCAN, output)], [], options, False, 1)
     waiting.tell([*compare(output, truth), f"  now open {output / 'report.html'}"])

@@ -14,6 +14,7 @@ from prunus.cuts import Cut, CutRules, Plan, plan_cuts
 from prunus.cuts.plan import as_it_is
 from prunus.cuts.reach import samples
 from prunus.errors import NoTreeError, PrunusError, naming
+from prunus.files.work_folder import REFINED
 from prunus.frames.scan import Scan, open_scan
 from prunus.geometry.near import within
 from prunus.io.original import original_of
@@ -138,7 +139,7 @@ def _refined_beside(
 
     So that skeleton.json gives the plan that the scan gave.
     """
-    beside = path.with_name("refined.json")
+    beside = path.with_name(REFINED)
     if record is None or record.refines is not None or not beside.exists():
         return None
     fine, own = read_record(beside)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from prunus.errors import PrunusError
 from prunus.files.reading import read_bytes
+from prunus.files.work_folder import GRAPH, JOURNAL, MASK, SCAN, TREES, TRUTH
 from prunus.io.clouds.readers import READERS
 from prunus.io.clouds.text import may_be_cloud
 
@@ -19,12 +20,11 @@ BAGS = (".bag", ".mcap", ".db3")
 WORDY = (".txt", ".csv", ".asc")
 """Endings that notes and tables have too: in a folder, such a file without points is no scan."""
 
-ONE_TREE = {"cloud_final.ply": (), "scan.ply": ("trees.npz", "truth.json")}
+ONE_TREE = {"cloud_final.ply": (), SCAN: (TREES, TRUTH)}
 """Clouds that stand for their folder, and beside which of these files (none: always)."""
 
 
-JOURNAL = "journal.jsonl"
-OF_WORK = ("mask.ply", "graph.npz", "graph-*.npz")
+OF_WORK = (MASK, GRAPH, "graph-*.npz")
 """Files beside the journal of a tree that are no scans: see docs/studio.md."""
 
 

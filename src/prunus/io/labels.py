@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from prunus.errors import PrunusError
 from prunus.files.jsonl import append_line, read_lines_of
 from prunus.files.reading import read_bytes, record_of
+from prunus.files.work_folder import LABELS
 from prunus.io.clouds.units import Unit
 from prunus.io.skeletons.skeleton_file import InputRecord, Point
 
@@ -121,7 +122,7 @@ def labels_in(folder: Path) -> list[Path]:
 
     Those without a whole line were never begun.
     """
-    own = folder / "labels.jsonl"
+    own = folder / LABELS
     found = [own] if own.is_file() else sorted(folder.glob("*/labels.jsonl"))
     return [path for path in found if b"\n" in read_bytes(path, empty=True)]
 

@@ -16,6 +16,7 @@ from pathlib import Path
 from prunus import __version__
 from prunus.errors import PrunusError
 from prunus.files.safely import remove
+from prunus.files.work_folder import GRAPH
 from prunus.frames.scan import Scan
 from prunus.model import PointCloud
 from prunus.model.cloud import middle_of
@@ -37,7 +38,7 @@ class Graphs:
 
     def path(self, line: int) -> Path:
         """Where that is kept which a line of the journal gave."""
-        return self.folder / ("graph.npz" if line == FIRST else f"graph-{line}.npz")
+        return self.folder / (GRAPH if line == FIRST else f"graph-{line}.npz")
 
     def first(
         self, scan: Scan, params: Parameters, seed: int, fits: Callable[[Result], bool]

@@ -20,14 +20,13 @@ from prunus.errors import PrunusError
 from prunus.files.jsonl import append_at, ended, object_in, whole_lines
 from prunus.files.reading import record_of
 from prunus.files.safely import write_bytes
+from prunus.files.work_folder import JOURNAL, LABELS
 from prunus.io.clouds.units import Unit
-from prunus.io.inputs import JOURNAL
 from prunus.io.skeletons.skeleton_file import InputRecord
 from prunus.model.cloud import FRAMES
 from prunus.params import Parameters
 from prunus.session.timeline import Line, Move, Timeline
 
-NAME = JOURNAL
 Status = Literal["new", "in work", "done"]
 
 
@@ -124,12 +123,12 @@ def _check_moves(path: Path, lines: tuple[Line, ...]) -> None:
 
 def status_of(folder: Path) -> Status:
     """How far a tree is, by the files in its work folder; PrunusError on a corrupt journal."""
-    journal = read_journal(folder / NAME)
+    journal = read_journal(folder / JOURNAL)
     timeline = Timeline.of(journal.lines if journal else ())
     said = [act.done for act in timeline.standing if isinstance(act, SetStatus)]
     if said and said[-1]:
         return "done"
-    touched = timeline.position > 0 or _has_lines(folder / "labels.jsonl")
+    touched = timeline.position > 0 or _has_lines(folder / LABELS)
     return "in work" if touched else "new"
 
 

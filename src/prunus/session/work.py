@@ -22,6 +22,7 @@ from prunus.editing.acts import Act, from_json, to_json
 from prunus.editing.state import State, apply, clear
 from prunus.errors import PrunusError
 from prunus.files.safely import remove
+from prunus.files.work_folder import CORRECTED, JOURNAL, MASK, SKELETON
 from prunus.frames.scan import Scan
 from prunus.io.clouds.classes import write_classes
 from prunus.io.skeletons.skeleton_file import write_skeleton
@@ -42,8 +43,6 @@ from prunus.session.sources import (
     unseen,
 )
 from prunus.session.timeline import Move, Timeline
-
-SKELETON, CORRECTED, MASK = "skeleton.json", "corrected.json", "mask.ply"
 
 
 class Work:
@@ -102,7 +101,7 @@ class Work:
         holder: lock.Holder | None,
         seen: Callable[[Scan], None],
     ) -> Work:
-        path = folder / book.NAME
+        path = folder / JOURNAL
         journal = book.read_journal(path)
         begun = journal if journal is not None and journal.lines else None
         head = begun.head if begun else None
@@ -197,7 +196,7 @@ class Work:
 
     def _write(self, move: Move, state: State) -> State:
         """Write a line, then the files that follow from what it gave."""
-        path, end = self.folder / book.NAME, self._require_own()
+        path, end = self.folder / JOURNAL, self._require_own()
         line, self._end = book.append(path, end, move, gives(move, state))
         self._history.add(line, state)
         self._save()

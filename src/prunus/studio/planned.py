@@ -12,6 +12,7 @@ from prunus.cuts.plan_file import plan_file
 from prunus.editing import State
 from prunus.editing.draft import Pair, pair_of
 from prunus.errors import PrunusError
+from prunus.files.work_folder import CORRECTED, SKELETON
 from prunus.io.skeletons.plans import PlanFile, made_on, read_plan, write_plan
 from prunus.io.skeletons.skeleton_file import sha256_of
 from prunus.model import Floats, Kind, Skeleton
@@ -19,8 +20,6 @@ from prunus.model.branches import branches
 from prunus.refine.refined import refined
 from prunus.result import REFINED_WITH
 from prunus.session import Work
-
-PLAN = "plan.json"
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +81,7 @@ def file_of(plan: Plan, work: Work) -> PlanFile:
     return plan_file(
         plan,
         scan.cloud.to_input,
-        skeleton="corrected.json" if work.position else "skeleton.json",
+        skeleton=CORRECTED if work.position else SKELETON,
         skeleton_sha256=sha256_of(tree),
         input=scan.record,
         notes=scan.notes,

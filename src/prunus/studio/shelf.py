@@ -8,10 +8,9 @@ from pathlib import Path
 
 from prunus.errors import OptionError, PrunusError
 from prunus.files.safely import check_readable
+from prunus.files.work_folder import SKELETON
 from prunus.io.inputs import clouds_in, is_one, names_of, source_of
 from prunus.names import folder_name
-
-SKELETON = "skeleton.json"
 
 
 @dataclass(frozen=True)

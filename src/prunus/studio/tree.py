@@ -9,11 +9,12 @@ from prunus.cuts import Plan
 from prunus.editing import Act, State, branch_names
 from prunus.editing.edits import Edits, edits
 from prunus.errors import PrunusError, describe
+from prunus.files.work_folder import PLAN
 from prunus.frames.scan import Scan
 from prunus.model import PointCloud, Skeleton
 from prunus.session import Settings, Work, status_of
 from prunus.studio.picture import Picture
-from prunus.studio.planned import PLAN, file_of, save, told_of_file
+from prunus.studio.planned import file_of, save, told_of_file
 from prunus.studio.shelf import Item
 
 Told = Callable[[], None]

@@ -9,6 +9,7 @@ import numpy as np
 
 from prunus.editing.edits import edits, label_ratios, on_same_nodes
 from prunus.errors import NoTreeError, PrunusError
+from prunus.files.work_folder import CORRECTED, SKELETON
 from prunus.io.records import PairRecord
 from prunus.io.skeletons.lines import READERS, checked_length, read_lines
 from prunus.io.skeletons.skeleton_file import read_skeleton
@@ -53,9 +54,9 @@ def _gold_in(folder: Path) -> dict[str, Path]:
     skeleton would be right by definition.
     """
     named = _named(folder, "corrected", "truth", "gold", "skeleton")
-    if not any(path.name == "corrected.json" for path in named.values()):
+    if not any(path.name == CORRECTED for path in named.values()):
         return named
-    return {name: path for name, path in named.items() if path.name != "skeleton.json"}
+    return {name: path for name, path in named.items() if path.name != SKELETON}
 
 
 def _named(folder: Path, *stems: str) -> dict[str, Path]:

@@ -16,6 +16,7 @@ import numpy as np
 
 from prunus.editing.edits import edits, on_same_nodes
 from prunus.errors import PrunusError
+from prunus.files.work_folder import CORRECTED, JOURNAL, LABELS, MASK, SKELETON
 from prunus.frames.scan import Scan, open_scan
 from prunus.io.clouds.classes import target_of
 from prunus.io.labels import read_labels
@@ -30,12 +31,11 @@ from prunus.model import PointCloud, Skeleton
 from prunus.names import as_text
 from prunus.params import Parameters
 from prunus.pipeline import follow
-from prunus.session.journal import NAME as JOURNAL
 from prunus.session.journal import Journal, read_journal, status_of
 
 STEP = 0.02
 """The corrected skeleton is given a node every so many metres, as true trees have them."""
-FILES = ("corrected.json", "skeleton.json", "mask.ply", "labels.jsonl", JOURNAL)
+FILES = (CORRECTED, SKELETON, MASK, LABELS, JOURNAL)
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Corrected:
 
     def opened(self) -> tuple[Skeleton, SkeletonFile, Scan, Journal | None]:
         """The corrected skeleton, frame of the file, what its file says, its scan and journal."""
-        path = self.folder / "corrected.json"
+        path = self.folder / CORRECTED
         gold, record = read_record(path)
         if record.input is None:
             raise PrunusError(f"{path}: input: none; expected the scan that it was made from")
@@ -78,11 +78,11 @@ class Corrected:
 
         Nothing where the two do not stand on the same ones, or the machine's was not kept.
         """
-        path = self.folder / "skeleton.json"
+        path = self.folder / SKELETON
         if not path.exists():
             return []
         tree, machine = self.tree(), read_record(path)[0]
-        both = on_same_nodes(machine, read_record(self.folder / "corrected.json")[0])
+        both = on_same_nodes(machine, read_record(self.folder / CORRECTED)[0])
         if both is None:
             return []
         return [
@@ -94,7 +94,7 @@ class Corrected:
 
     def edges(self) -> dict[str, Any]:
         """The network on the edges that were labelled; empty where none were."""
-        path = self.folder / "labels.jsonl"
+        path = self.folder / LABELS
         held = read_labels(path) if path.exists() else None
         if held is None or not held.labels:
             return {}
@@ -129,11 +129,11 @@ def _is_done(folder: Path) -> bool:
 def _tree(subject: Corrected) -> Tree:
     gold, record, scan, journal = subject.opened()
     base = None if journal is None else journal.head.base
-    mask = subject.folder / "mask.ply"
+    mask = subject.folder / MASK
     if mask.exists():
         cloud = scan.cloud.take(target_of(mask, len(scan.cloud)))
     else:
-        params = Parameters.of_record(record.params or {}, str(subject.folder / "corrected.json"))
+        params = Parameters.of_record(record.params or {}, str(subject.folder / CORRECTED))
         cloud = _isolated(scan.cloud, base, params, record.seed or 0)
     truth = with_nodes_every(gold, STEP)
     habits = habits_of(truth.moved(scan.cloud.to_input.inverse()))

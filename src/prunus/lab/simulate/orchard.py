@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from prunus.files.safely import write_bytes, written_together
+from prunus.files.work_folder import SCAN, TRUTH
 from prunus.io.skeletons.skeleton_file import write_skeleton
 from prunus.lab.simulate.row import NONE
 from prunus.lab.simulate.scan import Scan, simulate_scan
@@ -54,10 +55,10 @@ def write_simulated(folder: Path, scan: Scan, views: bool = False) -> None:
         branch[own] = branch_of_rows(branches(tree), len(tree))[scan.node[own]]
         label[own] = tree.label[scan.node[own]]
     truth = {"kind": scan.kind, "tree": scan.tree, "branch": branch, "label": label}
-    with written_together(folder, "scan.ply", older=["rig.json"]) as together:
+    with written_together(folder, SCAN, older=["rig.json"]) as together:
         if views:
             _write_views(together, scan)
-        write_skeleton(together / "truth.json", scan.truth)
+        write_skeleton(together / TRUTH, scan.truth)
         write_scan(together, scan.xyz, truth, scan.row.trees)
 
 

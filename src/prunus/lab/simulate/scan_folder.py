@@ -16,6 +16,7 @@ import numpy as np
 
 from prunus.errors import PrunusError
 from prunus.files.safely import parsing, read_bytes, write_bytes
+from prunus.files.work_folder import SCAN, TREES
 from prunus.io.ply import ply_bytes, read_ply, table_of
 from prunus.model import Floats, Ints, Kind, Skeleton
 
@@ -44,8 +45,8 @@ def write_scan(folder: Path, xyz: Floats, truth: dict[str, Ints], trees: list[Sk
     columns |= {name: values.astype(_width_of(values)) for name, values in truth.items()}
     words = ", ".join(f"{kind.value} {kind.name.lower()}" for kind in Kind)
     comments = [f"kind: {words}", "label: 0 trunk, 1 support, 2 leader, 3 side branch, -1 none"]
-    write_bytes(folder / "scan.ply", ply_bytes({"vertex": table_of(columns)}, comments))
-    write_bytes(folder / "trees.npz", _trees_bytes(trees))
+    write_bytes(folder / SCAN, ply_bytes({"vertex": table_of(columns)}, comments))
+    write_bytes(folder / TREES, _trees_bytes(trees))
 
 
 def _width_of(values: Ints) -> type[np.signedinteger[Any]]:
@@ -55,13 +56,13 @@ def _width_of(values: Ints) -> type[np.signedinteger[Any]]:
 
 def read_scan(folder: Path) -> ScannedTree:
     """Read what `write_scan` wrote; PrunusError naming the file otherwise."""
-    path = folder / "scan.ply"
+    path = folder / SCAN
     vertex = read_ply(read_bytes(path), path)["vertex"]
     missing = {"x", "y", "z", "kind", "tree", "branch"} - set(vertex.dtype.names or ())
     if missing:
         raise PrunusError(f"{path}: no property {min(missing)!r}; expected a simulated scan")
     xyz = np.column_stack([vertex[axis].astype(np.float64) for axis in "xyz"])
-    trees = _read_trees(folder / "trees.npz")
+    trees = _read_trees(folder / TREES)
     kind, tree, branch = (vertex[name].astype(np.int64) for name in ("kind", "tree", "branch"))
     return ScannedTree(folder.name, xyz, kind, tree, branch, trees)
 

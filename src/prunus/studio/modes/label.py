@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from prunus import __version__
 from prunus.editing import Rebuild
 from prunus.errors import PrunusError
+from prunus.files.work_folder import LABELS
 from prunus.io.labels import CATEGORIES, Category, LabelHead
 from prunus.model import ScoredGraph
 from prunus.paper.candidates import find_candidates
@@ -184,7 +185,7 @@ def queue_of(work: Work) -> Queue:
         }
     )
     every = score_edges(find_candidates(state.result.graph.superpoints), NetworkScorer())
-    return Queue.of(every, state.scan.to_input, work.folder / "labels.jsonl", head)
+    return Queue.of(every, state.scan.to_input, work.folder / LABELS, head)
 
 
 def _ends(graph: ScoredGraph) -> NDArray[np.float64]:

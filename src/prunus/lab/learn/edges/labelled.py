@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from prunus.errors import PrunusError
+from prunus.files.work_folder import MASK
 from prunus.frames.scan import open_scan
 from prunus.io.clouds.classes import target_of
 from prunus.io.labels import CATEGORIES, EdgeLabel, LabelHead, Labels, read_labels
@@ -87,7 +88,7 @@ def labelled_graphs(
     if not over:
         return graphs, over
     source = original_of(held.head.input, path.parent, scans)
-    for graph in _graphs(source, held.head, path.parent / "mask.ply"):
+    for graph in _graphs(source, held.head, path.parent / MASK):
         if not over:
             break
         category, over = matched(over, graph)

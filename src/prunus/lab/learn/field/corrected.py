@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 from prunus.editing.acts import Mark, Rebuild
 from prunus.editing.marks import chosen
 from prunus.errors import PrunusError
+from prunus.files.work_folder import MASK
 from prunus.io.clouds.classes import kinds_of
 from prunus.lab.experiment.gold import Corrected, with_nodes_every
 from prunus.lab.learn.field.examples import FieldExample
@@ -27,7 +28,6 @@ from prunus.session.graphfile import read_graph
 from prunus.session.graphs import FIRST, Graphs
 from prunus.session.journal import Journal
 from prunus.session.timeline import Timeline
-from prunus.session.work import MASK
 
 STREAM = 9  # so that the points kept are drawn independently of others
 DRAWN_M = 0.02  # a corrected skeleton is given nodes so far apart to look for points around it
