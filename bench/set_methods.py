@@ -7,12 +7,15 @@ import os
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from prunus import skeletonize
 from prunus.errors import PrunusError
+from prunus.growth.chain import Votes
+from prunus.growth.ways import cheapest
+from prunus.method import Method as Chain
 from prunus.model import Bools, Floats, PointCloud, Skeleton
 from prunus.params import Parameters
 
@@ -35,17 +38,25 @@ def _default(cloud: PointCloud, base: Floats | None) -> Found:
     return _skeletonized(cloud, base, Parameters())
 
 
+def _by_cost(cloud: PointCloud, base: Floats | None) -> Found:
+    """The default, but of which tree wood is tells cost alone."""
+    chain = replace(Chain.default(), evidence=Votes(own=cheapest))
+    return _skeletonized(cloud, base, Parameters(), chain)
+
+
 def _paper(cloud: PointCloud, base: Floats | None) -> Found:
     return _skeletonized(cloud, base, Parameters.paper())
 
 
-def _skeletonized(cloud: PointCloud, base: Floats | None, params: Parameters) -> Found:
-    result = skeletonize(cloud, base, params)
+def _skeletonized(
+    cloud: PointCloud, base: Floats | None, params: Parameters, chain: Chain | None = None
+) -> Found:
+    result = skeletonize(cloud, base, params, method=chain)
     every = np.ones(len(cloud), np.bool_)
     return Found(result.skeleton, every if result.isolated is None else result.isolated.target)
 
 
-METHODS: dict[str, Method] = {"default": _default, "paper": _paper}
+METHODS: dict[str, Method] = {"default": _default, "by_cost": _by_cost, "paper": _paper}
 
 
 def method_of(name: str) -> Method:

@@ -2,8 +2,9 @@
 
 Each set is of another kind of tree or scan, so that a claim stands for each apart; `measured` are
 trees that people measured, for testing only (`--measured FOLDER`, see `bench.set_measured`).
-Methods are `default`, `paper`, `growth`, or any `module:function` that takes a `PointCloud` and a
-base or None. Cases are kept in the `--cache` folder; a rerun costs only the methods.
+Methods are `default`, `by_cost` (the same, but cost alone tells whose wood is), `paper`, or any
+`module:function` that takes a `PointCloud` and a base or None. Cases are kept in the `--cache`
+folder; a rerun costs only the methods.
 
 A2 and geometry ratio: `prunus.lab.evaluate.by_length`. Found branches are of those that
 the scan shows. Trees that are no UFO trees (in `any`) have no labels: geometry alone counts.

@@ -117,9 +117,11 @@ def all_tried(name: str, count: int, cache: Path, after: int = 0) -> Iterator[Tr
 
 @cache
 def _version() -> str:
-    """Changes with the network, the chain, and what is said to be right."""
+    """Changes with the networks, the chain, and what is said to be right."""
     home = Path(prunus.__file__).parent
-    digest = hashlib.sha256((home / "weights" / "field.onnx").read_bytes())
+    digest = hashlib.sha256()
+    for network in ("field", "owner"):
+        digest.update((home / "weights" / f"{network}.onnx").read_bytes())
     for room in ("field", "growth", "lab/evaluate"):
         for path in sorted((home / room).glob("*.py")):
             digest.update(path.read_bytes())

@@ -446,6 +446,9 @@ def test_an_orchard_is_written_tree_by_tree(tmp_path: Path) -> None:
         (["--network", "field", "--epochs", 3], "stand in its recipe"),
         (["--network", "field", "--seed", 3], "stand in its recipe"),
         (["--network", "field", "--recipe", "mine.toml"], "mine.toml: seed"),
+        (["--network", "owner", "--epochs", 3], "stand in its recipe"),
+        (["--network", "owner", "--recipe", "mine.toml"], "mine.toml: seed"),
+        (["mine.toml", "--network", "owner"], "learns from simulated rows alone"),
     ],
 )
 def test_a_training_that_cannot_be_meant_blames_the_command(

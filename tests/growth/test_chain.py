@@ -78,7 +78,9 @@ def test_what_was_isolated_is_the_tree_of_one_step(seed: int) -> None:
     two = skeletonize(scan.xyz[one.isolated.target])
     assert two.isolated is None
     assert np.array_equal(one.skeleton.label, two.skeleton.label)
-    assert np.allclose(one.skeleton.xyz, two.skeleton.xyz, atol=1e-3)
+    # The origin lies elsewhere, so that a vote at the very limit of what is near may be of another.
+    away = np.linalg.norm(one.skeleton.xyz - two.skeleton.xyz, axis=1)
+    assert (away < 1e-3).mean() > 0.99 and away.max() < 0.01
 
 
 def test_a_base_far_from_any_wood_is_refused(cloud: Floats) -> None:

@@ -65,6 +65,7 @@ class Network(StrEnum):
 
     EDGES = "edges"
     FIELD = "field"
+    OWNER = "owner"
 
 
 Place = tuple[float, float, float]

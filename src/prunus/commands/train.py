@@ -17,20 +17,23 @@ if TYPE_CHECKING:
 def train(
     ctx: typer.Context,
     output: Annotated[
-        Path, typer.Option("-o", "--output", help="Weights to write (.onnx); a folder for field.")
+        Path,
+        typer.Option(
+            "-o", "--output", help="Weights to write (.onnx); of field and owner a folder."
+        ),
     ],
     folders: Annotated[
         list[Path] | None, typer.Argument(help="Simulated scans, or the studio's folders.")
     ] = None,
     network: Annotated[
         Network,
-        typer.Option(help="edges: those of the paper's method; field: of points."),
+        typer.Option(help="edges: the paper's; field: of points; owner: whose wood is."),
     ] = Network.EDGES,
     start: Annotated[
         str | None,
         typer.Option(
             "--from",
-            help="Go on from: paper, shipped (field), a file, scratch. "
+            help="Go on from: paper, shipped (field, owner), a file, scratch. "
             "[default: paper with labels]",
         ),
     ] = None,
@@ -39,7 +42,9 @@ def train(
     epochs: Annotated[int | None, typer.Option(min=1, help="[default: as the recipe]")] = None,
     recipe: Annotated[
         Path | None,
-        typer.Option(exists=True, dir_okay=False, help="Of field: TOML. [default: the shipped]"),
+        typer.Option(
+            exists=True, dir_okay=False, help="Of field, owner: TOML. [default: the shipped]"
+        ),
     ] = None,
     jobs: Jobs = CORES,
 ) -> None:
@@ -54,13 +59,17 @@ def train(
     The point field, again to go on: `prunus train --network field -o run`
     """
     waiting: Waiting = ctx.obj
-    if network == Network.FIELD:
+    if network != Network.EDGES:
+        own = f"--network {network.value}"
         if epochs is not None or seed:
-            raise OptionError("--network field: seed and steps stand in its recipe: see --recipe")
-        waiting.tell(_field_trained(waiting, folders or [], output, recipe, start, scans, jobs))
+            raise OptionError(f"{own}: seed and steps stand in its recipe: see --recipe")
+        if folders and network == Network.OWNER:
+            raise OptionError(f"{own}: learns from simulated rows alone; expected no folder")
+        name = network.value
+        waiting.tell(_trained(waiting, name, folders or [], output, recipe, start, scans, jobs))
         return
     if recipe is not None:
-        raise OptionError(f"--recipe: of no use with --network {network.value}; expected field")
+        raise OptionError("--recipe: of no use with --network edges; expected field or owner")
     if not folders:
         raise OptionError("no folder to learn from: expected simulated scans, or the studio's")
     waiting.doing("loading torch", at_once=True)
@@ -70,8 +79,9 @@ def train(
     waiting.tell(lines_of(school(folders, output, course, jobs, waiting.watch)))
 
 
-def _field_trained(
+def _trained(
     waiting: Waiting,
+    name: str,
     folders: list[Path],
     output: Path,
     recipe: Path | None,
@@ -79,14 +89,15 @@ def _field_trained(
     scans: Path | None,
     jobs: int,
 ) -> list[str]:
-    """Train the network of the point field; what to say of it."""
-    from prunus.lab.learn.field.recipe import recipe_of
+    """Train a network on simulated scans, and corrected trees; what to say of it."""
+    from prunus.lab.learn.recipe import recipe_of
 
     with blaming_the_command():
-        settings = recipe_of(recipe)
+        settings = recipe_of(recipe, name)
     waiting.doing("loading torch", at_once=True)
     try:
-        from prunus.lab.learn.field.school import FieldCourse, field_school
+        from prunus.lab.learn.learners import LEARNERS
+        from prunus.lab.learn.school import Course, school
     except ImportError as error:
         raise OptionError("training needs torch and onnx: pip install 'prunus[train]'") from error
     from prunus.lab.experiment.gold import corrected_in
@@ -97,7 +108,8 @@ def _field_trained(
         corrected += done
         for name in in_work:
             waiting.say(f"{folder / name}: not marked as done, so left out")
-    course = FieldCourse(
-        folder=output, recipe=settings, corrected=corrected, start=start, jobs=jobs
-    )
-    return field_school(course, waiting.watch, waiting.say)
+    course = Course(
+        learner=LEARNERS[name], folder=output, recipe=settings, corrected=corrected, start=start,
+        jobs=jobs,
+    )  # fmt: skip
+    return school(course, waiting.watch, waiting.say)

@@ -98,7 +98,7 @@ def gather_votes(field: PointField) -> Threads:
     fewest = min(LEAST_VOTES, SPARSE * usual)
     kept = density >= max(fewest, min(LEAST_SHARE * usual, ENOUGH_VOTES))
     field, voted, weight, density = field.take(kept), voted[kept], weight[kept], density[kept]
-    node = _node_of(voted, field.toward_foot, density)
+    node = cover(voted, field.toward_foot, density, APART_M)
     of_voxel[wood[kept]] = node
     total = np.bincount(node, weight)
 
@@ -143,13 +143,13 @@ def _mean_shift(xyz: Floats, direction: Floats, weight: Floats) -> Floats:
     return np.asarray((near @ (weight[:, None] * xyz)) / (near @ weight)[:, None])
 
 
-def _node_of(xyz: Floats, direction: Floats, density: Floats) -> Ints:
+def cover(xyz: Floats, direction: Floats, density: Floats, reach: float) -> Ints:
     """The node (V,) that each vote belongs to: a maximal independent set, the densest first.
 
-    In each round every vote that is the densest of those still free around it becomes a node, and
-    takes those with it (Luby's algorithm with density for chance).
+    In each round every vote that is the densest of those still free within reach becomes a node,
+    and takes those with it that run the same way (Luby's algorithm with density for chance).
     """
-    near = _around(xyz, direction, APART_M)
+    near = _around(xyz, direction, reach)
     rank = np.empty(len(xyz))
     rank[np.lexsort((*xyz.T, density))] = np.arange(1, len(xyz) + 1)
     owner, free = np.zeros(len(xyz), np.int64), rank.copy()

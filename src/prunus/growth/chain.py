@@ -18,11 +18,12 @@ from prunus.field.network import see_field
 from prunus.field.votes import PointField, Threads, gather_votes
 from prunus.field.voxels import Voxels, voxels_of
 from prunus.field.wires import without_wires
+from prunus.growth.belonging import likeliest
 from prunus.growth.branches import Grown as Branches
 from prunus.growth.branches import cut_branches
 from prunus.growth.evidence import seeded_graph
 from prunus.growth.graph import ThreadGraph, join_threads
-from prunus.growth.grow import Choose, Cut, Orchard, foot_ends
+from prunus.growth.grow import Choose, Cut, Orchard, Own, foot_ends
 from prunus.growth.parents import choose_parents
 from prunus.growth.told import SURE, lead_of, told_of
 from prunus.growth.ways import Ways
@@ -137,13 +138,15 @@ class Votes:
     """The evidence that votes give; each part can be replaced by another of its kind.
 
     see: voxels to the point field; clean: the field without what is no wood though it looks like
-    it, wires; vote: field to threads; join: threads, and the longest gap in metres, to a graph.
+    it, wires; vote: field to threads; join: threads, and the longest gap in metres, to a graph;
+    own: to which of the feet of trees in view each node belongs.
     """
 
     see: Callable[[Voxels], PointField] = see_field
     clean: Callable[[PointField, np.random.Generator], PointField] = without_wires
     vote: Callable[[PointField], Threads] = gather_votes
     join: Callable[[Threads, float], ThreadGraph] = join_threads
+    own: Own = likeliest
 
     def __call__(
         self,
@@ -180,7 +183,8 @@ class Votes:
         with timed(seconds, "growth"):
             base, notes = _on_wood(threads, at, cloud)
             graph = self.join(threads, params.growth.gap_max)
-            orchard = Orchard.of(graph, base, alone=params.isolation.isolate == "never")
+            alone = params.isolation.isolate == "never"
+            orchard = Orchard.of(graph, base, alone, self.own)
         return View(
             cloud=cloud, drawn=drawn, voxels=voxels, field=field, orchard=orchard, at=at,
             notes=notes,

@@ -8,14 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from prunus.field.votes import Threads
+from prunus.growth.belonging import likeliest
 from prunus.growth.branches import Grown, cut_branches
 from prunus.growth.feet import find_feet, main_foot, nearest_foot
 from prunus.growth.graph import ThreadGraph, confidence_of
 from prunus.growth.labels import Labelled
 from prunus.growth.parents import choose_parents
-from prunus.growth.ways import Ways, find_ways
+from prunus.growth.ways import Ways, cheapest, find_ways
 from prunus.model import Floats, Ints, Skeleton
 
+Own = Callable[[ThreadGraph, Ints], Ints]
+"""To which of the feet (F,) each node (N,) belongs."""
 Cut = Callable[[Threads, Ways, int], Grown]
 """Which branches grow from a foot."""
 Choose = Callable[[Threads, Grown], tuple[Grown, Labelled]]
@@ -26,7 +29,7 @@ MOST_M = 0.05
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Orchard:
-    """All trees in view: each node of the threads grows from the foot that is nearest by cost.
+    """All trees in view: each node of the threads grows from the foot of its tree.
 
     feet (F,) are nodes; `main` is that of the tree that is meant.
     """
@@ -37,18 +40,25 @@ class Orchard:
     main: int
 
     @classmethod
-    def of(cls, graph: ThreadGraph, base: Floats | None = None, alone: bool = False) -> Orchard:
+    def of(
+        cls,
+        graph: ThreadGraph,
+        base: Floats | None = None,
+        alone: bool = False,
+        own: Own = likeliest,
+    ) -> Orchard:
         """The trees of some threads; meant is that at `base` (3,), or at which the scanner looks.
 
-        Threads hold one node at least. `alone`: all is one tree.
+        Threads hold one node at least. `alone`: all is one tree; else `own` tells whose wood is.
         """
         threads = graph.threads
         feet = find_feet(graph, None if base is None else nearest_foot(threads, base))
-        ways = find_ways(graph, feet)
+        own = cheapest if alone else own
+        ways = find_ways(graph, feet, own(graph, feet))
         main = main_foot(threads, ways.foot, feet) if base is None else int(feet[0])
         if alone:
             feet = np.array([main])
-            ways = find_ways(graph, feet)
+            ways = find_ways(graph, feet, own(graph, feet))
         return cls(graph=graph, feet=feet, ways=ways, main=main)
 
     def tree_at(

@@ -28,13 +28,18 @@ class Ways:
     length: Floats
 
 
-def find_ways(graph: ThreadGraph, feet: Ints) -> Ways:
-    """The cheapest way to each node, from the foot of the tree that it most likely belongs to."""
-    _, _, tree = dijkstra(graph.belonging, indices=feet, return_predecessors=True, min_only=True)
+def cheapest(graph: ThreadGraph, feet: Ints) -> Ints:
+    """The foot (N,) of the tree as whose wood each node costs least, `NOWHERE` = of none."""
+    cost, _, foot = dijkstra(graph.belonging, indices=feet, return_predecessors=True, min_only=True)
+    return np.where(np.isfinite(cost), foot, NOWHERE)
+
+
+def find_ways(graph: ThreadGraph, feet: Ints, tree: Ints) -> Ways:
+    """The cheapest way to each node from the foot of its tree (N,), within that tree."""
     cost, before, foot = dijkstra(
         graph.within(tree), indices=feet, return_predecessors=True, min_only=True
     )
-    reached = np.isfinite(cost)
+    reached = np.isfinite(cost) & (tree != NOWHERE)
     before = np.where(reached & (before >= 0), before, NOWHERE)
     return Ways(
         before=before,

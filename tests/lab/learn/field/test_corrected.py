@@ -114,7 +114,7 @@ def test_an_example_is_read_as_it_was_written(example: FieldExample, tmp_path: P
 def test_neither_the_untold_nor_an_unknown_radius_counts_in_the_loss(example: FieldExample) -> None:
     torch = pytest.importorskip("torch", reason="training needs torch")
     from prunus.field.network import COLUMNS
-    from prunus.lab.learn.field.train import Batch, losses_of
+    from prunus.lab.learn.field.lessons import Batch, losses_of
 
     batch = Batch.of(lesson_of(example))
     assert (batch.role == UNTOLD).any()

@@ -13,21 +13,23 @@ from prunus.errors import OptionError, PrunusError  # noqa: E402
 from prunus.field.network import SHIPPED as WEIGHTS  # noqa: E402
 from prunus.field.network import see_field  # noqa: E402
 from prunus.lab.experiment.gold import Corrected  # noqa: E402
+from prunus.lab.learn import making, training  # noqa: E402
 from prunus.lab.learn.field import corrected as field_corrected  # noqa: E402
 from prunus.lab.learn.field import examples as field_examples  # noqa: E402
-from prunus.lab.learn.field import making as field_making  # noqa: E402
-from prunus.lab.learn.field import train as field_train  # noqa: E402
 from prunus.lab.learn.field.examples import FieldExample, lesson_of  # noqa: E402
-from prunus.lab.learn.field.losses import logged  # noqa: E402
-from prunus.lab.learn.field.recipe import SHIPPED, FieldRecipe, Steps, recipe_of  # noqa: E402
-from prunus.lab.learn.field.school import FieldCourse, begun, field_school, split  # noqa: E402
-from prunus.lab.learn.field.train import Training, read_checkpoint, train_field  # noqa: E402
+from prunus.lab.learn.field.lessons import field_losses  # noqa: E402
+from prunus.lab.learn.field.net import Tables  # noqa: E402
+from prunus.lab.learn.learners import FIELD  # noqa: E402
+from prunus.lab.learn.losses import logged  # noqa: E402
+from prunus.lab.learn.recipe import FieldRecipe, Steps, recipe_of, shipped_recipe  # noqa: E402
+from prunus.lab.learn.school import Course, school, split  # noqa: E402
+from prunus.lab.learn.training import Training, read_checkpoint, train  # noqa: E402
 from prunus.lab.simulate.scan import Scan  # noqa: E402
 from prunus.model import Role  # noqa: E402
 from tests.conftest import field_scan  # noqa: E402
 
 FEW = {"wide": 0, "first_wide": 0, "rig": 2, "first_rig": 0, "clean_every": 4}
-TINY = recipe_of(SHIPPED).model_dump() | {
+TINY = recipe_of(None).model_dump() | {
     "examples": FEW,
     "held_out": FEW | {"rig": 1, "first_rig": 9},
     "from_scratch": {"steps": 6, "rate": 2e-3},
@@ -55,18 +57,18 @@ def interrupted_after(count: int) -> Callable[..., Iterator[Any]]:
     return watch
 
 
-def course(folder: Path, **changed: Any) -> FieldCourse:
-    return FieldCourse(folder=folder, recipe=recipe(**changed))
+def course(folder: Path, **changed: Any) -> Course:
+    return Course(learner=FIELD, folder=folder, recipe=recipe(**changed))
 
 
 def make_small(patch: pytest.MonkeyPatch) -> None:
     def scan(seed: int, setting: str) -> Scan:
         return field_scan(3 + seed % 2)
 
-    patch.setattr(field_making, "simulate_scan", scan)
+    patch.setattr(making, "simulate_scan", scan)
     patch.setattr(field_examples, "MOST_POINTS", 6000)
     patch.setattr(field_examples, "POINTS", (1000, 2000))
-    patch.setattr(field_train, "KEPT_EVERY", 2)
+    patch.setattr(training, "KEPT_EVERY", 2)
 
 
 @pytest.fixture(autouse=True)
@@ -80,7 +82,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("done")
     with pytest.MonkeyPatch.context() as patch:
         make_small(patch)
-        lines = field_school(course(path), silently, str)
+        lines = school(course(path), silently, str)
     assert any("offset, mm" in line for line in lines)
     return path
 
@@ -92,10 +94,10 @@ def weights_in(folder: Path) -> dict[str, Any]:
 @pytest.mark.slow
 def test_an_interrupted_training_ends_as_one_that_was_not(folder: Path, tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
-        field_school(course(tmp_path), interrupted_after(3), str)
+        school(course(tmp_path), interrupted_after(3), str)
     assert not (tmp_path / "field.onnx").exists()
     said = list[str]()
-    field_school(course(tmp_path), silently, said.append)
+    school(course(tmp_path), silently, said.append)
     assert said == [f"{tmp_path}: going on after step 2 of 6"]
     whole, resumed = weights_in(folder), weights_in(tmp_path)
     assert all(torch.equal(own, resumed[name]) for name, own in whole.items())
@@ -108,8 +110,8 @@ def test_the_weights_say_what_the_network_says(folder: Path) -> None:
     example = FieldExample.read(min((folder / "examples").glob("*.npz")))
     voxels = lesson_of(example).voxels
     field = see_field(voxels, folder / "field.onnx")
-    net = begun(folder / "checkpoint.pt", 0)
-    tables = field_train.Tables.of(voxels.levels)
+    net = FIELD.begun(folder / "checkpoint.pt", 0)
+    tables = Tables.of(voxels.levels)
     said = net(torch.from_numpy(voxels.features()), tables)[:, : len(Role)].softmax(dim=1)
     assert field.role == pytest.approx(said.detach().numpy(), abs=1e-4)
 
@@ -117,23 +119,23 @@ def test_the_weights_say_what_the_network_says(folder: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("file", ["field.onnx", "checkpoint.pt"])
 def test_training_goes_on_from_weights_in_a_file(folder: Path, file: str) -> None:
-    net = begun(folder / file, 1)
+    net = FIELD.begun(folder / file, 1)
     assert all(torch.equal(own, net.state_dict()[k]) for k, own in weights_in(folder).items())
 
 
 def test_corrected_trees_are_learned_from_by_the_shipped_network_unless_said_otherwise() -> None:
     trees = [Corrected(Path("apple"), None)]
-    own = FieldCourse(folder=Path("run"), recipe=recipe(), corrected=trees)
+    own = Course(learner=FIELD, folder=Path("run"), recipe=recipe(), corrected=trees)
     assert own.begins == WEIGHTS
     assert replace(own, start="scratch").begins is None
     assert replace(own, corrected=[]).begins is None
-    begun(own.begins, 0)
+    FIELD.begun(own.begins, 0)
 
 
 @pytest.mark.slow
 def test_a_training_that_goes_on_takes_fewer_steps(folder: Path, tmp_path: Path) -> None:
-    own = FieldCourse(folder=tmp_path, recipe=recipe(), start=str(folder / "field.onnx"))
-    field_school(own, silently, str)
+    own = Course(learner=FIELD, folder=tmp_path, recipe=recipe(), start=str(folder / "field.onnx"))
+    school(own, silently, str)
     assert read_checkpoint(tmp_path / "checkpoint.pt")["step"] == 2
 
 
@@ -150,7 +152,7 @@ def test_a_folder_of_another_recipe_is_refused(
     folder: Path, changed: dict[str, Any], said: str
 ) -> None:
     with pytest.raises(PrunusError, match=said):
-        field_school(course(folder, **changed), silently, str)
+        school(course(folder, **changed), silently, str)
 
 
 @pytest.mark.parametrize("content", [b"no network", b"PK"])
@@ -159,9 +161,11 @@ def test_going_on_from_what_is_no_network_blames_the_option(
     tmp_path: Path, name: str, content: bytes
 ) -> None:
     (tmp_path / name).write_bytes(content)
-    own = FieldCourse(folder=tmp_path / "run", recipe=recipe(), start=str(tmp_path / name))
+    own = Course(
+        learner=FIELD, folder=tmp_path / "run", recipe=recipe(), start=str(tmp_path / name)
+    )
     with pytest.raises(OptionError, match=name):
-        field_school(own, silently, str)
+        school(own, silently, str)
     assert not (tmp_path / "run").exists()
 
 
@@ -176,7 +180,7 @@ def test_going_on_from_what_is_no_network_blames_the_option(
 def test_a_recipe_that_makes_no_sense_is_named(tmp_path: Path, line: str, said: str) -> None:
     path = tmp_path / "mine.toml"
     wrong = "first_rig = 699999" if "rig" in line else line.partition("=")[0] + "= -1"
-    path.write_text(SHIPPED.read_text().replace(line, wrong))
+    path.write_text(shipped_recipe("field").read_text().replace(line, wrong))
     with pytest.raises(PrunusError, match=f"mine.toml.*{said}"):
         recipe_of(path)
 
@@ -184,10 +188,10 @@ def test_a_recipe_that_makes_no_sense_is_named(tmp_path: Path, line: str, said: 
 def test_a_scan_of_too_few_points_is_left_out_and_not_made_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(field_making, "FEWEST_POINTS", 10**9)
-    wanted = field_making.examples_to_make(tmp_path, recipe().examples)
+    monkeypatch.setattr(field_examples, "FEWEST_POINTS", 10**9)
+    wanted = making.examples_to_make(tmp_path, recipe().examples)
     assert [one.done for one in wanted] == [False, False]
-    list(field_making.make_examples(wanted, 1))
+    list(making.make_examples(wanted, FieldExample, 1))
     assert [(one.done, one.path.exists()) for one in wanted] == [(True, False)] * 2
 
 
@@ -215,27 +219,30 @@ def test_a_corrected_tree_is_learned_from_and_said_to_be_little(
     monkeypatch.setattr(
         Training, "drawn", lambda own, rng: read.append(drawn(own, rng)) or read[-1]
     )
-    own = FieldCourse(
+    own = Course(
+        learner=FIELD,
         folder=tmp_path,
         recipe=recipe(),
         corrected=[Tree(Path("apple"), None)],
         start="scratch",
     )
-    note, *lines = field_school(own, silently, str)
+    note, *lines = school(own, silently, str)
     assert "1 corrected tree, fewer than 5, is little" in note
     assert not any(line.startswith("corrected") for line in lines)
     assert {path.parent.name for path in read} == {"examples", "corrected"}
     with pytest.raises(PrunusError, match=r"corrected\.000-apple: digest there, None asked for"):
-        field_school(course(tmp_path), silently, str)
+        school(course(tmp_path), silently, str)
 
 
 @pytest.mark.slow
 def test_the_losses_fall_on_one_scan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(field_train, "KEPT_EVERY", 5)
-    (one,) = field_making.examples_to_make(tmp_path, recipe(examples=FEW | {"rig": 1}).examples)
-    list(field_making.make_examples([one], 1))
-    training = Training(folder=tmp_path, simulated=[one.path], steps=Steps(steps=30, rate=2e-3))
-    train_field(training, begun(None, 0), silently)
+    monkeypatch.setattr(training, "KEPT_EVERY", 5)
+    (one,) = making.examples_to_make(tmp_path, recipe(examples=FEW | {"rig": 1}).examples)
+    list(making.make_examples([one], FieldExample, 1))
+    own = Training(
+        folder=tmp_path, lesson=field_losses, simulated=[one.path], steps=Steps(steps=30, rate=2e-3)
+    )
+    train(own, FIELD.begun(None, 0), silently)
     first, *_, last = logged(tmp_path)
     assert last["step"] == 30
     for name in ("role", "log_radius", "toward_foot"):

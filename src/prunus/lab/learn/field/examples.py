@@ -17,6 +17,7 @@ from prunus.lab.simulate.wide.points import PointTruth, point_truth
 from prunus.model import Bools, Floats, Ints, Kind, Role
 from prunus.model.rotations import turned
 
+FEWEST_POINTS = 2000  # a scan of fewer is left out
 MOST_POINTS = 150_000  # of a scan, kept to learn from
 POINTS = (12_000, 120_000)  # of a scan as shown, log
 ALONE = 0.5  # share of scans of which only the target is shown
@@ -38,6 +39,11 @@ class FieldExample:
     def of(cls, scan: Scan, rng: np.random.Generator) -> FieldExample:
         """The example of a simulated scan."""
         return cls(xyz=scan.xyz, kind=scan.kind, truth=point_truth(scan)).thinned(rng)
+
+    @property
+    def lacks(self) -> str | None:
+        """Why nothing can be learned from it: too few points."""
+        return f"{len(self.xyz)} points" if len(self.xyz) < FEWEST_POINTS else None
 
     def thinned(self, rng: np.random.Generator) -> FieldExample:
         """The example of so many points as are kept to learn from."""
@@ -90,7 +96,7 @@ class FieldExample:
         count = round(math.exp(rng.uniform(*np.log(POINTS))))
         if count < len(example.xyz):
             example = example.take(rng.choice(len(example.xyz), count, replace=False))
-        return example.moved(_motion(rng), rng.uniform(*SCALE))
+        return example.moved(motion(rng), rng.uniform(*SCALE))
 
     def moved(self, motion: Floats, scale: float) -> FieldExample:
         """The example under a rotation or reflection (3, 3), and larger by a scale."""
@@ -105,7 +111,8 @@ class FieldExample:
         return FieldExample(xyz=scale * self.xyz @ motion.T, kind=self.kind, truth=moved)
 
 
-def _motion(rng: np.random.Generator) -> Floats:
+def motion(rng: np.random.Generator) -> Floats:
+    """A turn about the upright, a little tilt, perhaps a mirror (3, 3)."""
     limit = math.pi if rng.random() < ANY_WAY else math.radians(20)
     about_z = turned(np.array([0.0, 0.0, rng.uniform(-limit, limit)]))
     tilt = turned(np.append(np.radians(rng.normal(0, TILT_DEG, 2)), 0.0))

@@ -24,6 +24,8 @@ TITLES = {
     "log_radius": "radius: mean error of its logarithm",
     "toward_foot": "direction to the foot: 1 - cosine",
     "accuracy": "voxels whose role is right",
+    "owner": "whose wood it is: cross entropy",
+    "owned": "wood given to the right tree",
 }
 STYLE = """
 body{font:15px/1.45 system-ui,sans-serif;color:#222;margin:0 auto;max-width:1250px;padding:16px}
@@ -39,7 +41,7 @@ Row = dict[str, Any]
 
 def log_losses(folder: Path, step: int, recent: Sequence[Losses]) -> None:
     """Add the means of the last steps to the log, and draw the page anew."""
-    means = {name: round(_mean([one[name] for one in recent]), 4) for name in TITLES}
+    means = {name: round(_mean([one[name] for one in recent]), 4) for name in recent[0]}
     rows = [*logged(folder), {"step": step, "at": time.strftime("%H:%M:%S"), **means}]
     _keep(folder, rows)
 
@@ -65,10 +67,11 @@ def losses_page(rows: Sequence[Row]) -> str:
     figures = (
         _curve(title, step, np.array([row[name] for row in rows], np.float64))
         for name, title in TITLES.items()
+        if name in rows[0]
     )
     return f"""<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><title>Losses of the point field - prunus</title>
-<style>{STYLE}</style></head><body><h1>Losses of the point field</h1>
+<html lang="en"><head><meta charset="utf-8"><title>Losses of the training - prunus</title>
+<style>{STYLE}</style></head><body><h1>Losses of the training</h1>
 <div class="room">{"".join(figures)}</div></body></html>
 """
 

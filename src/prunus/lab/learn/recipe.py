@@ -1,4 +1,4 @@
-"""The recipe of the point field's training, and the folder that is for one recipe alone."""
+"""The recipe of a training, and the folder that is for one recipe alone."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from prunus.files.reading import json_of, read_text, read_toml, record_of
 from prunus.files.safely import write_bytes
 from prunus.lab.simulate.habits import Group
 
-SHIPPED = Path(__file__).with_name("field.toml")
 KEPT = "recipe.json"
 
 Count = Annotated[int, Field(ge=0)]
@@ -62,18 +61,17 @@ class Corrected(Group):
     share: Share
 
 
-class FieldRecipe(Group):
-    """What the network of the point field learns from, and for how long: see `field.toml`."""
+class Recipe(Group):
+    """What a network learns from, and for how long: see `owner.toml`."""
 
     seed: Count
     examples: Scans
     held_out: Scans
     from_scratch: Steps
     going_on: Steps
-    corrected: Corrected
 
     @model_validator(mode="after")
-    def _makes_sense(self) -> FieldRecipe:
+    def _makes_sense(self) -> Recipe:
         if not len(self.examples):
             raise ValueError("examples: none; expected some scans to learn from")
         for name in ("wide_seeds", "rig_seeds"):
@@ -83,10 +81,24 @@ class FieldRecipe(Group):
         return self
 
 
-def recipe_of(path: Path | None) -> FieldRecipe:
+class FieldRecipe(Recipe):
+    """The same of the network of the point field: see `field.toml`."""
+
+    corrected: Corrected
+
+
+RECIPES: dict[str, type[Recipe]] = {"field": FieldRecipe, "owner": Recipe}
+
+
+def shipped_recipe(network: str) -> Path:
+    """The file of the recipe that ships for a network."""
+    return Path(__file__).parent / network / f"{network}.toml"
+
+
+def recipe_of(path: Path | None, network: str = "field") -> Recipe:
     """The recipe in a file, None = the shipped one; PrunusError naming file and field."""
-    path = path or SHIPPED
-    return record_of(FieldRecipe, read_toml(path), path)
+    path = path or shipped_recipe(network)
+    return record_of(RECIPES[network], read_toml(path), path)
 
 
 def claim(folder: Path, made_from: dict[str, Any]) -> None:

@@ -1,25 +1,39 @@
-"""The examples that the point field learns from, made by the recipe and kept in its folder."""
+"""The examples that a network learns from, made by the recipe and kept in its folder."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Protocol, Self
 
 import numpy as np
 
 from prunus.files.safely import write_bytes
-from prunus.lab.learn.field.examples import FieldExample
-from prunus.lab.learn.field.recipe import Scans
+from prunus.lab.learn.recipe import Scans
 from prunus.lab.simulate.scan import Scan, simulate_scan
 from prunus.lab.simulate.wide.scan import simulate_wide
 from prunus.processes.workers import in_order
 
-FEWEST_POINTS = 2000  # a scan of fewer is left out
 LEFT_OUT = ".left-out"
 STREAM = {"wide": 7, "rig": 8}  # so that the points kept are drawn independently of the scans
 Orchard = Literal["wide", "rig"]
+
+
+class Example(Protocol):
+    """What is kept of a scan to learn from."""
+
+    @classmethod
+    def of(cls, scan: Scan, rng: np.random.Generator) -> Self:
+        """The example of a simulated scan."""
+
+    @property
+    def lacks(self) -> str | None:
+        """Why nothing can be learned from it, None where something can."""
+
+    def write(self, path: Path) -> None:
+        """Keep it."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +48,7 @@ class Made:
 
     @property
     def left_out(self) -> Path:
-        """The file that says that the scan has too few points."""
+        """The file that says why nothing can be learned from the scan."""
         return self.path.with_suffix(LEFT_OUT)
 
     @property
@@ -62,15 +76,15 @@ def examples_to_make(folder: Path, scans: Scans) -> list[Made]:
     return [*rig, *wide]
 
 
-def make_examples(missing: Sequence[Made], jobs: int) -> Iterator[None]:
-    """Make examples, so many at a time."""
-    yield from in_order(_make, missing, jobs)
+def make_examples(missing: Sequence[Made], kind: type[Example], jobs: int) -> Iterator[None]:
+    """Make examples of a kind, so many at a time."""
+    yield from in_order(partial(_make, kind), missing, jobs)
 
 
-def _make(own: Made) -> None:
+def _make(kind: type[Example], own: Made) -> None:
     rng = np.random.default_rng([own.number, STREAM[own.orchard]])
-    example = FieldExample.of(own.scan(), rng)
-    if len(example.xyz) < FEWEST_POINTS:
-        write_bytes(own.left_out, f"{len(example.xyz)} points\n".encode())
+    example = kind.of(own.scan(), rng)
+    if example.lacks:
+        write_bytes(own.left_out, f"{example.lacks}\n".encode())
     else:
         example.write(own.path)

@@ -1,0 +1,1 @@
+"""Learning the network that tells whose wood is."""
