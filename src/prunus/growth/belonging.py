@@ -24,7 +24,6 @@ MOST_TOKENS = 800
 """So many around each foot are looked at; what lies farther off goes by cost."""
 SUREST = 3.0
 """Log odds of one node count so much at most: a network is oftener wrong than it says."""
-
 DOUBT = 1.0
 """Wood that no tree is likely to have is of none where the log odds of the one that it costs least
 are below minus this; else it goes by cost."""

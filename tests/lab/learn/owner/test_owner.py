@@ -175,7 +175,7 @@ def test_of_two_feet_of_one_tree_either_is_right() -> None:
     own = lesson()
     double = type(own)(
         tokens=own.tokens, feet=np.array([0, 0, 1]), tree=own.tree[[0, 0, 1]],
-        whose=own.whose, nodes=own.nodes,
+        whose=own.whose, nodes=own.nodes, by_cost=own.by_cost[[0, 0, 1]],
     )  # fmt: skip
     logits = right_logits(own, 30.0)[[0, 0, 1, 2]]
     logits[0] = -30.0

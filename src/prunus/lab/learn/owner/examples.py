@@ -18,7 +18,7 @@ from prunus.field.wires import without_wires
 from prunus.growth.belonging import MOST_TOKENS
 from prunus.growth.feet import find_feet
 from prunus.growth.graph import join_threads
-from prunus.growth.tokens import COSTLIEST, Tokens
+from prunus.growth.tokens import Tokens
 from prunus.io.arrays import read_arrays, write_arrays
 from prunus.lab.learn.field.examples import SCALE, motion
 from prunus.lab.simulate.scan import Scan
@@ -128,7 +128,7 @@ class OwnerLesson:
 
     feet (F,), rows of those of the tokens; tree (F,), on which each stands, -1 = on none; whose
     (T, trees + 1), the share of the nodes of a token that are of each tree, then of none known;
-    nodes (T,), how many a token has.
+    nodes (T,), how many a token has; by_cost (F, T), the share of them that costs each foot least.
     """
 
     tokens: Tokens
@@ -136,6 +136,7 @@ class OwnerLesson:
     tree: Ints
     whose: Floats
     nodes: Ints
+    by_cost: Floats
 
     def rows(self, foot: int) -> Ints:
         """The tokens that are asked about for a foot."""
@@ -156,7 +157,7 @@ def owner_lesson(
     feet = find_feet(graph)
     if len(feet) < 2:
         return None
-    cost = dijkstra(graph.belonging, indices=feet, limit=COSTLIEST)
+    cost = dijkstra(graph.belonging, indices=feet)
     tokens = Tokens.of(threads, feet, cost)
     chosen = np.arange(len(feet))
     if rng is not None and len(feet) > MOST_FEET:
@@ -166,8 +167,12 @@ def owner_lesson(
     np.add.at(whose, (tokens.of_node, example.tree), 1)
     nodes = whose.sum(axis=1)
     tree = [_tree_at(threads, int(feet[row]), example.tree) for row in chosen]
-    return OwnerLesson(tokens=tokens, feet=chosen, tree=np.array(tree),
-                       whose=whose / nodes[:, None], nodes=nodes.astype(np.int64))  # fmt: skip
+    least = cost.argmin(axis=0)
+    by_cost = [np.bincount(tokens.of_node, least == foot) / nodes for foot in chosen]
+    return OwnerLesson(
+        tokens=tokens, feet=chosen, tree=np.array(tree), whose=whose / nodes[:, None],
+        nodes=nodes.astype(np.int64), by_cost=np.array(by_cost),
+    )  # fmt: skip
 
 
 def _tree_at(threads: Threads, foot: int, tree: Ints) -> int:

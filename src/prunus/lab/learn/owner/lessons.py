@@ -13,11 +13,12 @@ from torch import Tensor, nn
 from prunus.growth.belonging import asked, log_odds
 from prunus.lab.learn.export import Named, onnx_of
 from prunus.lab.learn.owner.examples import OwnerExample, OwnerLesson, owner_lesson
-from prunus.model import Floats, Ints
+from prunus.model import Bools, Floats, Ints
 
 NOT_ASKED = -9.0  # the logit of what is too far off to be asked about
 TRIES = 10  # to show a scene with several feet
 Figures = dict[str, Any]
+Shares = tuple[float, float]
 
 
 def owner_losses(
@@ -87,24 +88,26 @@ def owner_figures(network: Path, examples: Iterable[Path]) -> Figures:
 
     Of a network in an ONNX file, mean over the feet of examples in files; and the same by cost.
     """
-    found: dict[str, list[tuple[float, float]]] = {"network": [], "cost": []}
+    network_gives, cost_gives = list[Shares](), list[Shares]()
     for path in examples:
         lesson = owner_lesson(OwnerExample.read(path))
         if lesson is not None:
-            odds, cost = log_odds(asked(lesson.tokens, network)), lesson.tokens.cost
-            for foot, tree in zip(lesson.feet, lesson.tree, strict=True):
-                if tree >= 0:
-                    found["network"].append(_shares(odds[foot] > 0, lesson, tree))
-                    found["cost"].append(_shares(cost.argmin(axis=0) == foot, lesson, tree))
-    return {name: np.nanmean(rows, axis=0).tolist() for name, rows in found.items()}
+            network_gives += _shares(log_odds(asked(lesson.tokens, network)) > 0, lesson)
+            cost_gives += _shares(lesson.by_cost, lesson)
+    found = {"network": network_gives, "cost": cost_gives}
+    return {name: np.mean(shares, axis=0).tolist() for name, shares in found.items()}
 
 
-def _shares(given: Any, lesson: OwnerLesson, tree: int) -> tuple[float, float]:
-    own = lesson.nodes * lesson.whose[:, tree]
-    other = lesson.nodes * lesson.whose[:, :-1].sum(axis=1) - own
-    return float(own[given].sum() / max(own.sum(), 1)), float(
-        other[~given].sum() / max(other.sum(), 1)
-    )
+def _shares(given: Bools | Floats, lesson: OwnerLesson) -> list[Shares]:
+    """For each foot that stands on a tree, where so much of each token (F, T) is given to it."""
+    found = []
+    for foot, tree in zip(lesson.feet, lesson.tree, strict=True):
+        own = lesson.nodes * lesson.whose[:, tree]
+        other = lesson.nodes * lesson.whose[:, :-1].sum(axis=1) - own
+        kept, left = (own * given[foot]).sum(), (other * (1.0 - given[foot])).sum()
+        if tree >= 0 and own.sum() > 0:
+            found.append((float(kept / own.sum()), float(left / max(other.sum(), 1))))
+    return found
 
 
 def owner_table(columns: dict[str, Figures]) -> list[str]:
