@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import jsonschema
@@ -124,6 +125,22 @@ def test_poses_of_a_simulated_scan_are_refined() -> None:
     assert all(view.after < view.before for view in fused.views)
     cells = np.floor((fused.xyz - fused.xyz.min(axis=0)) / VOXEL)
     assert len(np.unique(cells, axis=0)) > 0.99 * len(cells)
+
+
+@pytest.mark.slow
+def test_a_common_motion_of_all_views_moves_the_cloud(rng: np.random.Generator) -> None:
+    common = RigidMotion(turned(rng.uniform(-1.5, 1.5, 3)), rng.uniform(-3, 3, 3))
+    views = rig(views=3)
+
+    def after(pose: RigidMotion) -> RigidMotion:
+        return RigidMotion(common.rotation @ pose.rotation, common.apply(pose.translation))
+
+    moved: list[RigView] = [replace(one, nominal=after(one.nominal)) for one in views]
+    for one, other in zip(fuse(views).views, fuse(moved).views, strict=True):
+        expected = after(one.pose)
+        assert other.pose.rotation == pytest.approx(expected.rotation, abs=1e-4)
+        assert other.pose.translation == pytest.approx(expected.translation, abs=5e-4)
+        assert other.after == pytest.approx(one.after, abs=1e-4)
 
 
 @pytest.mark.slow
