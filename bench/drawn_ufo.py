@@ -31,7 +31,7 @@ Rng = np.random.Generator
 
 def straight_ufo(rng: Rng) -> Skeleton:
     """A tree of straight limbs, a node every 2 cm at most, base at the origin."""
-    wood = Wood(rng, ufo_habits(), 0.0)
+    wood = Wood(rng=rng, habits=ufo_habits(), lean=0.0)
     trunk = _limb(wood, 0, Label.TRUNK, UP, rng.uniform(0.5, 0.8), (0.040, 0.034))
     for side in (-1.0, 1.0):
         way = np.array([side, 0.0, 0.0])
@@ -119,4 +119,4 @@ def _scan(rng: Rng, surface: Surface, row: Row, noise: float, strays: int) -> Sc
             (row.pieces.row, none),
         )
     )
-    return Scan(xyz, kind, tree, node, row, (), 0.0)
+    return Scan(xyz=xyz, kind=kind, tree=tree, node=node, row=row, views=(), focal=0.0)

@@ -29,10 +29,13 @@ MILLIMETRE = 1e-3
 def views_of(scan: Scan, nominal: list[RigidMotion]) -> list[RigView]:
     """The views of a scan with other nominal poses."""
     H, W = scan.views[0].depth.shape
-    camera = Camera(scan.focal, scan.focal, W / 2, H / 2)
+    camera = Camera(fx=scan.focal, fy=scan.focal, cx=W / 2, cy=H / 2)
     steps = [np.rint(view.depth / MILLIMETRE) * MILLIMETRE for view in scan.views]
     both = enumerate(zip(steps, nominal, strict=True))
-    return [DepthView(f"view_{k}", depth, camera, pose) for k, (depth, pose) in both]
+    return [
+        DepthView(name=f"view_{k}", depth=depth, camera=camera, nominal=pose)
+        for k, (depth, pose) in both
+    ]
 
 
 def drawn(true: list[RigidMotion], rng: np.random.Generator) -> list[RigidMotion]:

@@ -62,9 +62,19 @@ def follow(
     evidence = method.evidence(cloud, at, params, rng, seconds)
     found = method.tree(evidence, params, rng, seconds)
     return Result(
-        found.skeleton, found.graph, found.score, found.history, seconds, params, seed,
-        found.warnings, found.notes, cloud, found.isolated, found.told,
-    )  # fmt: skip
+        in_house=found.skeleton,
+        graph=found.graph,
+        score=found.score,
+        history=found.history,
+        seconds=seconds,
+        params=params,
+        seed=seed,
+        warnings=found.warnings,
+        notes=found.notes,
+        scan=cloud,
+        isolated=found.isolated,
+        told=found.told,
+    )
 
 
 def _judged(result: Result) -> Result:

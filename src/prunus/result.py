@@ -49,7 +49,7 @@ class Found:
     history: Floats = field(default_factory=lambda: np.zeros(0))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Result:
     """The skeleton and the evidence: graph, score, history (I,) of best scores, timings, warnings.
 

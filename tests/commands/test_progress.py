@@ -140,8 +140,8 @@ def test_failures_among_many_are_told_again_at_the_end() -> None:
 
 
 def test_a_step_counts_in_words() -> None:
-    assert Step("trees", 3, 0.0, 2).named() == "trees: 2 of 3"
-    assert Step("fusing", None, 10.0).reminder(70.4) == "still fusing (60 s)"
+    assert Step(what="trees", total=3, began=0.0, done=2).named() == "trees: 2 of 3"
+    assert Step(what="fusing", total=None, began=10.0).reminder(70.4) == "still fusing (60 s)"
 
 
 def started(words: list[str], **how: Any) -> AbstractContextManager[Child]:

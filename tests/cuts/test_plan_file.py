@@ -43,13 +43,16 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     home = tmp_path_factory.mktemp("cuts")
     xyz = cloud.to_input.apply(cloud.xyz) - truth.xyz[0]
     write_cloud(home / "tree.ply", xyz @ FRAMES["optical"])
-    do(Task(home / "tree.ply", home / "out"), Options((0.0, 0.0, 0.0), report=False, traits=True))
+    do(
+        Task(home / "tree.ply", home / "out"),
+        Options(base=(0.0, 0.0, 0.0), report=False, traits=True),
+    )
     return home
 
 
 @pytest.fixture(scope="module")
 def plan(folder: Path) -> PlanFile:
-    return cut_file(Source(folder / "tree.ply", (0.0, 0.0, 0.0)), RULES)
+    return cut_file(Source(path=folder / "tree.ply", base=(0.0, 0.0, 0.0)), RULES)
 
 
 def test_a_cloud_gives_a_plan_in_its_own_frame(plan: PlanFile, folder: Path) -> None:
@@ -71,7 +74,7 @@ def test_a_cloud_is_skeletonized_as_it_was_asked_for(plan: PlanFile, folder: Pat
     )
     asked = [(fewer, 0, None), (fewer, 1, None), (paper, 1, None), (paper, 1, ConstantScorer(0.9))]
     found = [plan] + [
-        cut_file(Source(path, base, params=params, seed=seed, scorer=scorer), RULES)
+        cut_file(Source(path=path, base=base, params=params, seed=seed, scorer=scorer), RULES)
         for params, seed, scorer in asked
     ]
     points = [[cut.point for cut in one.cuts] for one in found]
@@ -82,7 +85,7 @@ def test_a_cloud_is_skeletonized_as_it_was_asked_for(plan: PlanFile, folder: Pat
 def test_a_skeleton_finds_its_cloud_and_gives_the_plan_of_the_cloud(
     name: str, plan: PlanFile, folder: Path
 ) -> None:
-    again = cut_file(Source(folder / "out" / name), RULES)
+    again = cut_file(Source(path=folder / "out" / name), RULES)
     assert again.input == plan.input and again.skeleton == name
     assert again.skeleton_sha256 == plan.skeleton_sha256
     assert again.left == plan.left
@@ -108,7 +111,7 @@ def test_a_skeleton_without_its_refined_tree_gives_nearly_the_same_plan(
 ) -> None:
     for name in ("tree.ply", "out/skeleton.json"):
         shutil.copy(folder / name, tmp_path)
-    again = cut_file(Source(tmp_path / "skeleton.json"), RULES)
+    again = cut_file(Source(path=tmp_path / "skeleton.json"), RULES)
     assert any("refined anew" in note for note in again.notes)
     ours = {cut.id: np.array(cut.point) for cut in plan.cuts}
     theirs = {cut.id: np.array(cut.point) for cut in again.cuts}
@@ -121,7 +124,7 @@ def test_a_skeleton_without_its_refined_tree_gives_nearly_the_same_plan(
 def test_a_skeleton_tells_how_likely_its_branches_are(
     plan: PlanFile, folder: Path, name: str
 ) -> None:
-    again = cut_file(Source(folder / "out" / name), RULES)
+    again = cut_file(Source(path=folder / "out" / name), RULES)
     here, there = ({cut.id: cut.confidence for cut in one.cuts} for one in (plan, again))
     both = here.keys() & there.keys()
     assert len(both) > 3
@@ -148,7 +151,7 @@ def test_a_branch_has_one_number_in_every_file(plan: PlanFile, folder: Path) -> 
 
 def test_without_its_cloud_every_cut_is_for_a_person(tmp_path: Path) -> None:
     write_skeleton(tmp_path / "skeleton.json", drawn().moved(TO_OPTICAL))
-    plan = cut_file(Source(tmp_path / "skeleton.json"), RULES)
+    plan = cut_file(Source(path=tmp_path / "skeleton.json"), RULES)
     (cut,) = plan.cuts
     assert cut.needs_review and cut.approach is None and plan.input is None
     assert cut.point == pytest.approx((0.03, -0.5, 0.0)), "leaders point up, whatever the frame"
@@ -159,7 +162,7 @@ def test_without_its_cloud_every_cut_is_for_a_person(tmp_path: Path) -> None:
 def test_a_cloud_that_was_asked_for_and_is_not_there_is_an_error(
     folder: Path, tmp_path: Path
 ) -> None:
-    source = Source(folder / "out" / "skeleton.json", scans=tmp_path)
+    source = Source(path=folder / "out" / "skeleton.json", scans=tmp_path)
     with pytest.raises(PrunusError, match=r"tree\.ply"):
         cut_file(source, RULES)
 
@@ -243,7 +246,7 @@ def test_a_plan_belongs_to_its_skeleton_rough_and_refined(
     planned_on: str, shown_with: str, folder: Path, tmp_path: Path
 ) -> None:
     base = (0.0, 0.0, 0.0) if planned_on == "tree.ply" else None
-    made = cut_file(Source(folder / planned_on, base), RULES)
+    made = cut_file(Source(path=folder / planned_on, base=base), RULES)
     assert made.skeleton_sha256 == sha256_of(read_skeleton(folder / "out" / "skeleton.json"))
     assert "to be looked at" in into_bag(folder / shown_with, made, tmp_path)
 
@@ -271,7 +274,7 @@ def test_where_a_skeleton_is_kept_does_not_matter_but_where_its_nodes_are(
 
 def test_the_plan_of_another_tree_is_refused(folder: Path, plan: PlanFile, tmp_path: Path) -> None:
     write_skeleton(tmp_path / "other.json", drawn())
-    other = cut_file(Source(tmp_path / "other.json"), RULES)
+    other = cut_file(Source(path=tmp_path / "other.json"), RULES)
     assert not into_bag(folder / "out" / "skeleton.json", other, tmp_path / "a")
     assert not into_bag(folder / "out" / "refined.json", other, tmp_path / "b")
     assert not into_bag(tmp_path / "other.json", plan, tmp_path / "c")
@@ -309,8 +312,8 @@ def test_a_refined_skeleton_keeps_the_names_that_the_report_gave(
     assert set(own) == set(names)
     assert own["leader 1"].bounds.tolist() == other["leader 2"].bounds.tolist()
     assert own["leader 1"].bounds.tolist() != other["leader 1"].bounds.tolist()
-    plan = cut_file(Source(tmp_path / "refined.json", scans=folder), RULES)
-    usual = cut_file(Source(folder / "out" / "refined.json"), RULES)
+    plan = cut_file(Source(path=tmp_path / "refined.json", scans=folder), RULES)
+    usual = cut_file(Source(path=folder / "out" / "refined.json"), RULES)
     named = {cut.point: cut.branch for cut in plan.cuts}
     assert named == {c.point: swapped.get(c.branch, c.branch) for c in usual.cuts}
     left = {one.branch: one.why for one in plan.left if one.rule == "height"}
@@ -325,4 +328,4 @@ def test_a_corrected_skeleton_with_points_of_its_own_is_planned_too(
     skeleton, record = read_record(folder / "out" / "skeleton.json")
     free = replace(skeleton, superpoint=np.full(len(skeleton), -1))
     write_skeleton(folder / "out" / "corrected.json", free, input=record.input)
-    assert cut_file(Source(folder / "out" / "corrected.json"), RULES).input is not None
+    assert cut_file(Source(path=folder / "out" / "corrected.json"), RULES).input is not None

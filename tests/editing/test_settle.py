@@ -19,7 +19,9 @@ def small(seed: int) -> Draft:
     rng = np.random.default_rng(seed)
     into = {n: (int(rng.integers(n)), Label(int(rng.integers(4)))) for n in range(1, 6)}
     draft = state().draft
-    return Draft(draft.places, draft.superpoints, 0, into, {})
+    return Draft(
+        places=draft.places, superpoints=draft.superpoints, base=0, into=into, confidence={}
+    )
 
 
 def cost(draft: Draft, other: Draft) -> float:
@@ -62,7 +64,7 @@ def every(draft: Draft, allowed: Allowed) -> list[Draft]:
 @pytest.mark.parametrize("seed", range(8))
 def test_no_legal_tree_is_nearer(seed: int, relabel: bool, remove: bool) -> None:
     draft = small(seed)
-    allowed = Allowed([1 + seed % 5], relabel, remove)
+    allowed = Allowed(kept=[1 + seed % 5], relabel=relabel, remove=remove)
     found, others = settled(draft, allowed), every(draft, allowed)
     if found is None:
         assert others == []
@@ -73,13 +75,13 @@ def test_no_legal_tree_is_nearer(seed: int, relabel: bool, remove: bool) -> None
 
 def test_a_legal_tree_is_its_own_nearest() -> None:
     draft = state().draft
-    found = settled(draft, Allowed([], True, True))
+    found = settled(draft, Allowed(kept=[], relabel=True, remove=True))
     assert found is not None
     assert found.into == draft.into
 
 
 def test_what_stays_is_not_taken_away() -> None:
     draft = small(0)
-    found = settled(draft, Allowed([], True, True, stays=[5]))
+    found = settled(draft, Allowed(kept=[], relabel=True, remove=True, stays=[5]))
     assert found is not None
     assert 5 in found

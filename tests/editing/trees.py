@@ -44,11 +44,28 @@ def state(picture: str = TREE, seed: int = 0) -> State:
     own = Superpoints.of_nodes(cloud, 0.1)
     confidence = rng.uniform(0.3, 1, len(edges))
     category = rng.dirichlet(np.ones(5), len(edges))
-    scored = ScoredGraph(CandidateGraph(own, edges), confidence, category, "drawn")
+    scored = ScoredGraph(
+        candidates=CandidateGraph(own, edges),
+        confidence=confidence,
+        category=category,
+        scorer="drawn",
+    )
     graph = SeededGraph(scored, 0, np.array([M - 1]))
     found = Skeleton.build(cloud.xyz[:M], drawn.parent, drawn.label, superpoint=np.arange(M))
     return State.of(
-        Result(found, graph, 0.0, np.zeros(1), {}, Parameters(), 0, [], [], cloud, None)
+        Result(
+            in_house=found,
+            graph=graph,
+            score=0.0,
+            history=np.zeros(1),
+            seconds={},
+            params=Parameters(),
+            seed=0,
+            warnings=[],
+            notes=[],
+            scan=cloud,
+            isolated=None,
+        )
     )
 
 

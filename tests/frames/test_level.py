@@ -12,7 +12,14 @@ from prunus.model.rotations import turned, upright
 def strip(tilt: Floats, length: float = 3.0, width: float = 0.4) -> Ground:
     """A strip of ground along X, turned by a vector in degrees."""
     turn = turned(np.radians(tilt))
-    return Ground(turn[:, 2], np.zeros(3), np.ones(1, np.bool_), turn[:, 0], length, width)
+    return Ground(
+        up=turn[:, 2],
+        middle=np.zeros(3),
+        cells=np.ones(1, np.bool_),
+        along=turn[:, 0],
+        length=length,
+        width=width,
+    )
 
 
 @pytest.mark.parametrize("tilt", [[0.0, 14, 0], [-20.0, 0, 0], [12.0, -9, 0], [0.0, -3.5, 0]])

@@ -24,7 +24,7 @@ from prunus.schemas import schema
 from tests.conftest import field_scan
 
 STILL = RigidMotion(np.eye(3), np.zeros(3))
-CAMERA = Camera(100.0, 100.0, 10.0, 10.0)
+CAMERA = Camera(fx=100.0, fy=100.0, cx=10.0, cy=10.0)
 FIELD = 4
 """Seed of the simulated scan."""
 
@@ -33,12 +33,12 @@ def rig(shifts: dict[int, Floats] | None = None, views: int = 6) -> list[RigView
     """Views of a simulated scan as their rig places them; `shifts` (metres) place some worse."""
     scan = field_scan(FIELD)
     H, W = scan.views[0].depth.shape
-    camera = Camera(scan.focal, scan.focal, W / 2, H / 2)
+    camera = Camera(fx=scan.focal, fy=scan.focal, cx=W / 2, cy=H / 2)
     made: list[RigView] = []
     for k, view in enumerate(scan.views[:views]):
         shift = (shifts or {}).get(k, np.zeros(3))
         nominal = RigidMotion(view.nominal.rotation, view.nominal.translation + shift)
-        made.append(DepthView(f"view_{k}", view.depth, camera, nominal))
+        made.append(DepthView(name=f"view_{k}", depth=view.depth, camera=camera, nominal=nominal))
     return made
 
 
@@ -95,12 +95,15 @@ def test_flying_pixels_are_dropped_and_masked_ones_left_out() -> None:
     depth = np.zeros((20, 20))
     depth[:, 8:12] = 1.5
     depth[5, 12] = depth[9, 7] = 1.8
-    view = seen(DepthView("v", depth, CAMERA, STILL))
+    view = seen(DepthView(name="v", depth=depth, camera=CAMERA, nominal=STILL))
     assert view.flying == 2 and len(view.xyz) == 80
     assert view.xyz[:, 2].max() == 1.5
     mask = np.zeros((20, 20), np.bool_)
     mask[:10] = True
-    assert len(seen(DepthView("v", depth, CAMERA, STILL, mask=mask)).xyz) == 40
+    assert (
+        len(seen(DepthView(name="v", depth=depth, camera=CAMERA, nominal=STILL, mask=mask)).xyz)
+        == 40
+    )
 
 
 def test_partners_are_near_alike_and_of_other_views() -> None:
@@ -158,25 +161,27 @@ def test_partial_clouds_fit_and_keep_their_colours(rng: np.random.Generator) -> 
     colours = np.full((len(xyz), 3), 50, np.uint8)
     far = RigidMotion(np.eye(3), np.array([500_000.0, 5_000_000.0, 300.0]))
     views: list[RigView] = [
-        CloudView("a", far.apply(xyz), STILL, colours),
-        CloudView("b", far.apply(wrong.apply(xyz)), STILL, colours + np.uint8(1)),
+        CloudView(name="a", xyz=far.apply(xyz), nominal=STILL, rgb=colours),
+        CloudView(
+            name="b", xyz=far.apply(wrong.apply(xyz)), nominal=STILL, rgb=colours + np.uint8(1)
+        ),
     ]
     fused = fuse(views)
     assert fused.rgb is not None and set(fused.rgb[:, 0].tolist()) == {50, 51}
     first = fused.views[0].pose.apply(far.apply(xyz))
     second = fused.views[1].pose.apply(far.apply(wrong.apply(xyz)))
     assert np.linalg.norm(first - second, axis=1).max() < 0.002
-    assert fuse([views[0], CloudView("b", far.apply(xyz), STILL)]).rgb is None
+    assert fuse([views[0], CloudView(name="b", xyz=far.apply(xyz), nominal=STILL)]).rgb is None
 
 
 def test_same_seed_same_cloud(rng: np.random.Generator) -> None:
-    views: list[RigView] = [CloudView(name, rods(rng), STILL) for name in "a"]
+    views: list[RigView] = [CloudView(name=name, xyz=rods(rng), nominal=STILL) for name in "a"]
     assert (fuse(views, 3).xyz == fuse(views, 3).xyz).all()
 
 
 def test_one_view_is_only_back_projected(rng: np.random.Generator) -> None:
     xyz = rods(rng)
-    fused = fuse([CloudView("a", xyz, STILL)])
+    fused = fuse([CloudView(name="a", xyz=xyz, nominal=STILL)])
     (view,) = fused.views
     assert view.refused == "" and view.moved == 0 and math.isnan(view.after)
     assert len(fused.xyz) <= len(xyz)
@@ -185,14 +190,14 @@ def test_one_view_is_only_back_projected(rng: np.random.Generator) -> None:
 def test_views_without_points_and_views_that_share_nothing_are_refused(
     rng: np.random.Generator,
 ) -> None:
-    empty = DepthView("dark", np.zeros((20, 20)), CAMERA, STILL)
+    empty = DepthView(name="dark", depth=np.zeros((20, 20)), camera=CAMERA, nominal=STILL)
     with pytest.raises(PrunusError, match="hold no points"):
         fuse([empty])
-    tree = CloudView("tree", rods(rng), STILL)
+    tree = CloudView(name="tree", xyz=rods(rng), nominal=STILL)
     with pytest.raises(PrunusError, match=r"no two of 2 views fit.*dark: only 0 samples"):
         fuse([tree, empty])
     with pytest.raises(PrunusError, match="no two of 2 views fit"):
-        fuse([tree, CloudView("other", rods(rng) + 5.0, STILL)])
+        fuse([tree, CloudView(name="other", xyz=rods(rng) + 5.0, nominal=STILL)])
 
 
 @pytest.mark.slow

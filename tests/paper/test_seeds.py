@@ -26,7 +26,9 @@ def graph(frame: str = "z-up", kinds: bool = True, foot: Floats = FAR) -> Scored
     category[np.arange(30), label] = 1
     candidates = CandidateGraph(Superpoints.of_nodes(cloud, 0.1), edges)
     category = category if kinds else category[:, :0]
-    return ScoredGraph(candidates, np.full(30, 0.9), category, "drawn")
+    return ScoredGraph(
+        candidates=candidates, confidence=np.full(30, 0.9), category=category, scorer="drawn"
+    )
 
 
 def at(scored: ScoredGraph, place: Floats) -> Floats:

@@ -15,7 +15,13 @@ def upright(*lengths: float) -> Centrelines:
            for x, n in enumerate(size)]  # fmt: skip
     none = np.zeros(len(size), np.bool_)
     start = np.concatenate([[0], np.cumsum(size)])
-    return Centrelines(np.concatenate(xyz), start, np.full(len(size), -1), none, ~none)
+    return Centrelines(
+        xyz=np.concatenate(xyz),
+        start=start,
+        parent=np.full(len(size), -1),
+        goes_on=none,
+        free=~none,
+    )
 
 
 def ribbon(radius: Floats, noise: float, label: Label) -> Floats:

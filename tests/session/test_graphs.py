@@ -164,7 +164,7 @@ def test_a_scan_that_is_turned_otherwise_now_stands_as_it_did(
     tilt = np.array(
         [[1, 0, 0], [0, np.cos(angle), -np.sin(angle)], [0, np.sin(angle), np.cos(angle)]]
     )
-    monkeypatch.setattr(intake, "find_stance", lambda *_: Stance("z-up", tilt, []))
+    monkeypatch.setattr(intake, "find_stance", lambda *_: Stance(frame="z-up", turn=tilt, notes=[]))
     with Work.open(scan_file, folder) as again:
         assert same_state(again.state, work.state)
         assert same(again.scan.cloud, work.scan.cloud)

@@ -401,7 +401,7 @@ def test_a_skeleton_with_a_base_by_hand_is_found_again(
 
     up = machine.draft.after[machine.draft.after[machine.draft.base][0]][0]
     base = outside(machine, machine.draft.places[up])
-    do(Task(scan_file, tmp_path / "out"), Options(base, "z-up", report=False))
+    do(Task(scan_file, tmp_path / "out"), Options(base=base, frame="z-up", report=False))
     shutil.copy(scan_file, tmp_path / "out")
     with Work.open(tmp_path / "out" / "skeleton.json", tmp_path / "work", QUICK) as work:
         assert same(work.state.result.skeleton, read_skeleton(tmp_path / "out" / "skeleton.json"))

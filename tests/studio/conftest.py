@@ -90,7 +90,13 @@ class Remote:
         canvas = self.page.locator("canvas").first.bounding_box()
         width, height = int(canvas["width"]), int(canvas["height"])
         position, _ = standing("front", *self.picture.box, width / height)
-        return Eye(position, np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]]), FOV, width, height)
+        return Eye(
+            position=position,
+            rotation=np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]]),
+            fov=FOV,
+            width=width,
+            height=height,
+        )
 
     def come(self, url: str) -> None:
         """Open the page, and wait until the skeleton is drawn."""

@@ -45,7 +45,7 @@ def looking(view: str) -> Eye:
     up = np.array([0.0, 0.0, 1.0])
     right = np.cross(forward, up) / np.linalg.norm(np.cross(forward, up))
     rotation = np.column_stack([right, np.cross(forward, right), forward])
-    return Eye(position, rotation, FOV, 1000, 800)
+    return Eye(position=position, rotation=rotation, fov=FOV, width=1000, height=800)
 
 
 @pytest.mark.parametrize("view", VIEWS)

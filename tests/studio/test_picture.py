@@ -16,7 +16,15 @@ def drawn() -> Picture:
     skeleton = tree()
     nodes = list(range(len(skeleton)))
     cloud = PointCloud.from_xyz(skeleton.xyz)
-    return Picture(cloud, None, skeleton, None, None, nodes, dict.fromkeys(nodes, HOSTILE))
+    return Picture(
+        scan=cloud,
+        kind=None,
+        skeleton=skeleton,
+        graph=None,
+        machine=None,
+        nodes=nodes,
+        names=dict.fromkeys(nodes, HOSTILE),
+    )
 
 
 def test_a_thinned_cloud_is_the_same_each_time_and_holds_no_point_twice() -> None:
@@ -43,7 +51,7 @@ def test_a_slab_holds_what_lies_between_its_ends() -> None:
 def test_points_have_their_own_colour_that_of_their_class_or_grey() -> None:
     cloud = PointCloud.from_xyz(np.eye(3), rgb=np.eye(3, dtype=np.uint8))
     kind = np.array([Kind.WIRE, Kind.TARGET, Kind.STRAY], np.int8)
-    picture, rows = Picture(cloud, kind), np.array([2, 0])
+    picture, rows = Picture(scan=cloud, kind=kind), np.array([2, 0])
     assert colours_of(picture, rows, "rgb").tolist() == [[0, 0, 1], [1, 0, 0]]
     by_class = colours_of(picture, rows, "class").tolist()
     assert by_class == [list(KINDS[Kind.STRAY]), list(KINDS[Kind.WIRE])]
@@ -55,7 +63,9 @@ def test_by_depth_the_nearest_and_the_farthest_of_the_tree_are_farthest_apart_in
     skeleton = replace(tree(), xyz=tree().xyz + np.outer(tree().xyz[:, 2], [0, 0.5, 0]))
     y = np.array([-9.0, *skeleton.xyz[:, 1][[0, -1]], 9.0])
     cloud = PointCloud.from_xyz(np.column_stack([y * 0, y, y * 0]))
-    told = colours_of(Picture(cloud, None, skeleton), np.arange(4), "depth").tolist()
+    told = colours_of(
+        Picture(scan=cloud, kind=None, skeleton=skeleton), np.arange(4), "depth"
+    ).tolist()
     assert told[0] == told[1] == list(DEPTHS[0])
     assert told[3] == list(DEPTHS[-1])
     assert told[2] not in (told[0], list(GREY))

@@ -35,7 +35,13 @@ def drawn(radius: Floats | None = None) -> Refined:
     seen = np.ones(len(label), np.bool_)
     seen[-1] = False
     unknown = np.where(np.isnan(told), Unknown.RAGGED, Unknown.KNOWN)
-    return Refined(skeleton, np.where(np.isnan(told), np.nan, 0.001), unknown, seen, told * np.nan)
+    return Refined(
+        skeleton=skeleton,
+        radius_error=np.where(np.isnan(told), np.nan, 0.001),
+        unknown=unknown,
+        seen=seen,
+        likely=told * np.nan,
+    )
 
 
 def of(label: Label, tree: Refined | None = None) -> Record:
@@ -82,9 +88,13 @@ def test_diameters_start_outside_the_parent() -> None:
 def test_a_short_branch_has_no_diameter_at_30_cm() -> None:
     radius = drawn().skeleton.radius
     tree = drawn(radius)
-    short = Refined(tree.skeleton.part(np.arange(20) < 19), *(
-        values[:19] for values in (tree.radius_error, tree.unknown, tree.seen, tree.likely)
-    ))  # fmt: skip
+    short = Refined(
+        skeleton=tree.skeleton.part(np.arange(20) < 19),
+        radius_error=tree.radius_error[:19],
+        unknown=tree.unknown[:19],
+        seen=tree.seen[:19],
+        likely=tree.likely[:19],
+    )
     assert math.isnan(of(Label.SIDE_BRANCH, short)["diameter_30cm_mm"])
     assert of(Label.SIDE_BRANCH)["diameter_30cm_mm"] == pytest.approx(8)
 
@@ -128,7 +138,13 @@ def test_traits_of_the_tree() -> None:
 def test_the_base_alone_has_no_branches_and_no_leaders() -> None:
     bare = Skeleton.build([[0, 0, 0]], [-1], [0])
     unknown = np.full(1, np.nan)
-    tree = Refined(bare, unknown, np.ones(1, np.int64), np.zeros(1, np.bool_), unknown)
+    tree = Refined(
+        skeleton=bare,
+        radius_error=unknown,
+        unknown=np.ones(1, np.int64),
+        seen=np.zeros(1, np.bool_),
+        likely=unknown,
+    )
     assert branch_traits(tree) == []
     assert tree_traits(tree)["leaders"] == 0
     assert math.isnan(tree_traits(tree)["trunk_cross_section_cm2"])

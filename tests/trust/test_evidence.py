@@ -145,7 +145,7 @@ def test_a_least_confidence_on_the_way_counts_for_all_above() -> None:
     assert all(one["way"] == pytest.approx(np.log(0.05)) for one in above)
 
 
-FINE = Trust(np.full(3, 0.9), np.full(2, 0.9), 0.9)
+FINE = Trust(edge=np.full(3, 0.9), branch=np.full(2, 0.9), tree=0.9)
 
 
 @pytest.mark.parametrize(

@@ -33,11 +33,11 @@ def test_the_papers_way_has_no_trust() -> None:
 def test_a_person_is_told_what_is_doubtful() -> None:
     drawn = tree()
     some = branches(drawn)
-    fine = Trust(np.full(len(drawn), 0.95), np.full(len(some), 0.9), 0.95)
+    fine = Trust(edge=np.full(len(drawn), 0.95), branch=np.full(len(some), 0.9), tree=0.95)
     assert review_of(drawn, fine) == []
     doubts = np.array([0.1 if one.label in (Label.LEADER, Label.SIDE_BRANCH) else 0.9
                        for one in some])  # fmt: skip
-    told = review_of(drawn, Trust(fine.edge, doubts, 0.5))
+    told = review_of(drawn, Trust(edge=fine.edge, branch=doubts, tree=0.5))
     assert told[0] == "only 50% of its edges are likely right"
     assert sorted(told[1:]) == [f"leader {n} is likely wrong (10% sure)" for n in (1, 2, 3)]
 
@@ -45,7 +45,9 @@ def test_a_person_is_told_what_is_doubtful() -> None:
 def test_that_another_tree_may_be_meant_is_not_said_of_every_branch() -> None:
     drawn = tree()
     some = branches(drawn)
-    trust = Trust(np.full(len(drawn), 0.25), np.full(len(some), 0.24), 0.25, meant=0.27)
+    trust = Trust(
+        edge=np.full(len(drawn), 0.25), branch=np.full(len(some), 0.24), tree=0.25, meant=0.27
+    )
     told = review_of(drawn, trust)
     assert told[0].startswith("another tree in view may be meant as well (27% likely this one)")
     assert told[1:] == ["only 25% of its edges are likely right"]

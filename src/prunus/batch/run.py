@@ -30,7 +30,7 @@ Record = dict[str, Any]
 """What `--json` prints of one tree: a `TreeRecord`."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Options:
     """How every file of a batch is treated; `scorer` is for the paper's method alone."""
 

@@ -65,9 +65,15 @@ def cuts(
 
     waiting: Waiting = ctx.obj
     wanted = Source(
-        source, base, frame.value, unit and unit.value, scans,
-        parameters_in(params, points, no_isolate), seed, network_in(weights),
-    )  # fmt: skip
+        path=source,
+        base=base,
+        frame=frame.value,
+        unit=unit and unit.value,
+        scans=scans,
+        params=parameters_in(params, points, no_isolate),
+        seed=seed,
+        scorer=network_in(weights),
+    )
     check_use(wanted.params, weights)
     with blaming_the_command():
         by = shipped_rules() if rules is None else CutRules.from_toml(rules)

@@ -29,6 +29,6 @@ def demo(
     waiting.doing("growing and scanning a tree")
     truth = simulated_scan(output, seed)
     base = tuple(truth.xyz[0].tolist())
-    options = Options(base, "z-up", seed=seed)
+    options = Options(base=base, frame="z-up", seed=seed)
     report_on(waiting, [Task(output / SCAN, output)], [], options, False, 1)
     waiting.tell([*compare(output, truth), f"  now open {output / 'report.html'}"])

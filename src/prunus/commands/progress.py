@@ -37,7 +37,7 @@ class _Count(ProgressColumn):
         return Text("" if task.total is None else f"{task.completed:.0f} of {task.total:.0f}")
 
 
-@dataclass
+@dataclass(kw_only=True)
 class Step:
     """What is being done since when, and how many of how many are done."""
 
@@ -92,7 +92,7 @@ class Waiting:
     def doing(self, what: str, total: int | None = None, *, at_once: bool = False) -> None:
         """From now on this is done; `at_once` names it now, where it is known to take long."""
         with self.lock:
-            self.step: Step | None = Step(what, total, self.clock())
+            self.step: Step | None = Step(what=what, total=total, began=self.clock())
             self.spoken: float | None = None
             for task in self.bar.task_ids:
                 self.bar.remove_task(task)

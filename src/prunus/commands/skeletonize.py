@@ -68,9 +68,15 @@ def skeletonize(
     from prunus.batch.run import Options, plan
 
     options = Options(
-        base, frame.value, unit and unit.value, parameters_in(params, points, no_isolate), seed,
-        network_in(weights), not no_report, traits,
-    )  # fmt: skip
+        base=base,
+        frame=frame.value,
+        unit=unit and unit.value,
+        params=parameters_in(params, points, no_isolate),
+        seed=seed,
+        scorer=network_in(weights),
+        report=not no_report,
+        traits=traits,
+    )
     check_use(options.params, weights)
     tasks, failed = plan(clouds, output)
     report_on(ctx.obj, tasks, failed, options, json, jobs)

@@ -75,7 +75,7 @@ def train(
     waiting.doing("loading torch", at_once=True)
     from prunus.lab.learn.edges.school import Course, lines_of, school
 
-    course = Course(start, seed, epochs, scans)
+    course = Course(start=start, seed=seed, epochs=epochs, scans=scans)
     waiting.tell(lines_of(school(folders, output, course, jobs, waiting.watch)))
 
 

@@ -20,7 +20,7 @@ BESIDE = 0.12
 TINY = 1e-9
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Evidence:
     """What is known of a branch to be cut; NaN where nothing is.
 

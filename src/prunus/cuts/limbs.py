@@ -17,7 +17,7 @@ OUTSET, ONWARD = 0.04, 0.12
 """A branch bends at its foot when its first so many metres turn into those up to there."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Limb:
     """One branch: rows (R,) of the skeleton, `along` (R,) metres from its start on the parent.
 
@@ -62,7 +62,7 @@ class Limb:
         return float(np.interp(along, *own))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Limbs:
     """A skeleton in the house frame and its branches.
 
@@ -93,7 +93,7 @@ class Limbs:
                 skeleton, branch, number=number, name=name, parent=parent, above=above, far=far,
                 lengths=lengths,
             ))  # fmt: skip
-        return cls(skeleton, tuple(limbs), owner, measured)
+        return cls(skeleton=skeleton, all=tuple(limbs), owner=owner, measured=measured)
 
     def with_label(self, label: Label) -> list[Limb]:
         """The limbs of a label, by where they stand along the row."""
@@ -142,7 +142,17 @@ def _limb(
         radius = known_radius(skeleton, int(rows[0]), above.label)
         bark = exit_along(xyz, along, above.xyz, radius)
     reach = float(along[1] + far[rows[1]]) - bark
-    return Limb(number, name, branch.label, rows, xyz, along, parent, bark, reach)
+    return Limb(
+        number=number,
+        name=name,
+        label=branch.label,
+        rows=rows,
+        xyz=xyz,
+        along=along,
+        parent=parent,
+        bark=bark,
+        reach=reach,
+    )
 
 
 def _farthest(skeleton: Skeleton, lengths: Floats) -> Floats:

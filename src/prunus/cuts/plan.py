@@ -24,7 +24,7 @@ from prunus.refine.refined import Refined
 Point = tuple[float, float, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Cut:
     """One cut; lengths in metres, volumes in cubic metres, unknown numbers NaN.
 
@@ -101,7 +101,7 @@ def as_it_is(skeleton: Skeleton, likely: Floats | None = None) -> Refined:
     likely (M,): how likely the branch of each row is right.
     """
     return Refined(
-        skeleton,
+        skeleton=skeleton,
         radius_error=np.where(np.isfinite(skeleton.radius), 0.0, np.nan),
         unknown=np.zeros(len(skeleton), np.int64),
         seen=np.ones(len(skeleton), np.bool_),
@@ -128,10 +128,25 @@ def _cut(
         reasons += doubts_around(limbs, demand, gone, points.cut, way, rules)
     length, volume = _removed(tree.skeleton, gone, demand)
     return Cut(
-        f"{demand.rule}:{limb.name.replace(' ', '-')}", limb.name, limb.number, demand.rule,
-        demand.because, _point(point), _point(normal), _point(heading), way, evidence.diameter,
-        evidence.doubt, demand.stub, along, length, volume, confidence, tuple(reasons), evidence,
-    )  # fmt: skip
+        id=f"{demand.rule}:{limb.name.replace(' ', '-')}",
+        branch=limb.name,
+        branch_number=limb.number,
+        rule=demand.rule,
+        because=demand.because,
+        point=_point(point),
+        blade_normal=_point(normal),
+        branch_direction=_point(heading),
+        approach=way,
+        diameter=evidence.diameter,
+        diameter_error=evidence.doubt,
+        stub=demand.stub,
+        along=along,
+        removed_length=length,
+        removed_volume=volume,
+        confidence=confidence,
+        reasons=tuple(reasons),
+        evidence=evidence,
+    )
 
 
 def _removed(skeleton: Skeleton, gone: Bools, demand: Demand) -> tuple[float, float]:

@@ -48,7 +48,7 @@ SEEN = 0.02
 Place = tuple[float, float, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Source:
     """What is planned on, how a cloud is read and skeletonized, and where scans are looked for."""
 
@@ -161,7 +161,7 @@ def _as_told(skeleton: Skeleton, record: SkeletonFile | None) -> Refined | None:
     if record is None or record.radius_error is None or record.seen is None:
         return None
     return Refined(
-        skeleton,
+        skeleton=skeleton,
         radius_error=np.array(known(record.radius_error)),
         unknown=np.where(np.isfinite(skeleton.radius), Unknown.KNOWN, Unknown.FEW_POINTS),
         seen=np.array(record.seen),

@@ -25,7 +25,7 @@ SLOW = 0.05
 """Two confidences that differ by less are alike."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Demand:
     """A cut that a rule asks for: `along` a limb, metres from its start, and why.
 
@@ -42,7 +42,7 @@ class Demand:
     chosen: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Left:
     """A branch that a rule looked at and left, and why."""
 
@@ -104,17 +104,28 @@ def height(limbs: Limbs, rules: CutRules, down: Down) -> list[Verdict]:
     verdicts: list[Verdict] = []
     for limb in limbs.with_label(Label.LEADER):
         if _is_gone(limb, down.rows):
-            verdicts.append(Left("height", limb.name, "comes down by another rule", limb.number))
+            verdicts.append(
+                Left(
+                    rule="height",
+                    branch=limb.name,
+                    why="comes down by another rule",
+                    branch_number=limb.number,
+                )
+            )
             continue
         foot = _foot_on_support(limbs, limb)
         over = float(limb.xyz[:, 2].max()) - foot
         if over <= rules.height.over + GRID:
             why = f"{over:.2f} m over the support, not over {rules.height.over:g} m"
-            verdicts.append(Left("height", limb.name, why, limb.number))
+            verdicts.append(
+                Left(rule="height", branch=limb.name, why=why, branch_number=limb.number)
+            )
             continue
         because = f"{over:.2f} m over the support, over {rules.height.over:g} m"
         along = _rises_to(limb, foot + rules.height.to)
-        verdicts.append(Demand("height", limb, along, math.nan, because))
+        verdicts.append(
+            Demand(rule="height", limb=limb, along=along, stub=math.nan, because=because)
+        )
     return verdicts
 
 
@@ -130,7 +141,9 @@ def side_branches(limbs: Limbs, rules: CutRules, down: Down) -> list[Verdict]:
         if why is None and limb.bark + rules.side_branches.stub >= limb.along[-1]:
             why = "does not stand clear of its leader"
         if why is not None:
-            verdicts.append(Left("side_branches", limb.name, why, limb.number))
+            verdicts.append(
+                Left(rule="side_branches", branch=limb.name, why=why, branch_number=limb.number)
+            )
             continue
         because, doubts = _long(limb.reach, limit, rules.review.near_limit)
         if _is_gone(limb, down.rows):
@@ -160,7 +173,7 @@ def verdicts(limbs: Limbs, rules: CutRules) -> list[Verdict]:
     for rule in RULES:
         name = rule.__name__
         if not getattr(rules, name).apply:
-            found.append(Left(name, "every branch", "the rule is switched off"))
+            found.append(Left(rule=name, branch="every branch", why="the rule is switched off"))
             continue
         said = rule(limbs, rules, down)
         down = down.and_by(limbs, said)
@@ -169,7 +182,9 @@ def verdicts(limbs: Limbs, rules: CutRules) -> list[Verdict]:
 
 
 def _at_foot(rule: str, limb: Limb, stub: float, because: str, doubts: tuple[str, ...]) -> Demand:
-    return Demand(rule, limb, limb.bark + stub, stub, because, doubts)
+    return Demand(
+        rule=rule, limb=limb, along=limb.bark + stub, stub=stub, because=because, doubts=doubts
+    )
 
 
 def _is_gone(limb: Limb, gone: Bools) -> bool:
@@ -255,11 +270,16 @@ def _kept_by_spacing(
     own = [(apart, first + second - number) for apart, first, second in pairs
            if number in (first, second) and math.isfinite(apart)]  # fmt: skip
     if not own:
-        return Left("spacing", leader.name, "no other leader stands beside it", leader.number)
+        return Left(
+            rule="spacing",
+            branch=leader.name,
+            why="no other leader stands beside it",
+            branch_number=leader.number,
+        )
     apart, other = own[0]
     if apart >= closest:
         why = f"{apart:.2f} m from {leaders[other].name} at mid height, not under {closest:g} m"
     else:
         gone = next(leaders[n].name for near, n in own if near < closest and n in goes)
         why = f"{gone}, too close to it, goes"
-    return Left("spacing", leader.name, why, leader.number)
+    return Left(rule="spacing", branch=leader.name, why=why, branch_number=leader.number)

@@ -20,7 +20,7 @@ Into = Mapping[int, tuple[int, Label]]
 """Of each node but the base: the node before it, and the label of the edge between."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Draft:
     """A tree as what comes into each node.
 
@@ -43,7 +43,13 @@ class Draft:
         places[nodes] = skeleton.xyz
         rows = zip(nodes[1:], skeleton.parent[1:].tolist(), skeleton.label[1:], strict=True)
         into = {node: (nodes[above], Label(label)) for node, above, label in rows}
-        return cls(places, len(graph.xyz), nodes[0], into, confidences(graph))
+        return cls(
+            places=places,
+            superpoints=len(graph.xyz),
+            base=nodes[0],
+            into=into,
+            confidence=confidences(graph),
+        )
 
     def __contains__(self, node: int) -> bool:
         return node == self.base or node in self.into

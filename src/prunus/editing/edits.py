@@ -14,7 +14,7 @@ ONE_A_TREE = (Label.TRUNK, Label.SUPPORT)
 """These labels count as one segment a tree, however many there are."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Edits:
     """What must be done to a skeleton to correct it, in edges.
 
@@ -47,13 +47,13 @@ def edits(skeleton: Skeleton, corrected: Skeleton) -> Edits:
     both = ours.keys() & theirs.keys()
     segments = {label: _segments(corrected, label) for label in Label}
     return Edits(
-        len(ours.keys() - both),
-        len(theirs.keys() - both),
-        sum(ours[pair] != theirs[pair] for pair in both),
-        len(theirs),
-        {label: len(_with(ours, label) ^ _with(theirs, label)) for label in Label},
-        segments,
-        {label: int(corrected.edges_with(label).sum()) for label in Label},
+        wrong=len(ours.keys() - both),
+        missing=len(theirs.keys() - both),
+        mislabelled=sum(ours[pair] != theirs[pair] for pair in both),
+        edges=len(theirs),
+        differing={label: len(_with(ours, label) ^ _with(theirs, label)) for label in Label},
+        segments=segments,
+        segment_edges={label: int(corrected.edges_with(label).sum()) for label in Label},
     )
 
 

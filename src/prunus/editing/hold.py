@@ -75,7 +75,7 @@ def searched(draft: Draft, held: Held, graph: SeededGraph, params: Parameters, s
     best = _draft_of(found, draft)
     for back in (_lost(best, draft, nodes), nodes):
         whole = _put_back(best, draft, back)
-        right = settled(whole, Allowed(nodes, relabel=True, remove=True))
+        right = settled(whole, Allowed(kept=nodes, relabel=True, remove=True))
         if right is not None and not _lost(right, draft, nodes):
             return right
     raise _refusal(draft, _lost(best, draft, nodes))
@@ -121,7 +121,9 @@ def held_graph(draft: Draft, held: Held, graph: SeededGraph) -> SeededGraph:
             confidence[row] = 1.0
             category[row] = np.arange(category.shape[1]) == label
     candidates = CandidateGraph(_all_nodes(draft, graph.superpoints), edges)
-    scored = ScoredGraph(candidates, confidence, category, graph.scored.scorer)
+    scored = ScoredGraph(
+        candidates=candidates, confidence=confidence, category=category, scorer=graph.scored.scorer
+    )
     return SeededGraph(scored, draft.base, graph.tips[graph.tips != draft.base])
 
 

@@ -118,7 +118,9 @@ def _settling(
         (before, True, True),
         (set[int](), False, True),
     ):
-        right = settled(now, Allowed(kept | wrong.touched, relabel, remove, placed))
+        right = settled(
+            now, Allowed(kept=kept | wrong.touched, relabel=relabel, remove=remove, stays=placed)
+        )
         if right is not None:
             steps = _between(now, right, graph)
             first = act.acts if isinstance(act, Together) else (act,)

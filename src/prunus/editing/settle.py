@@ -25,7 +25,7 @@ Found = dict[Label | None, tuple[float, Chosen | None]]
 """By the label that comes in (None at the base): the least cost beyond, and what is kept."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Allowed:
     """What may change: labels, and whether wood may be taken away.
 

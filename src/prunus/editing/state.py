@@ -33,7 +33,7 @@ Chain = Callable[[PointCloud, Floats | None, Parameters, int], Result]
 """What `Rebuild` runs: on these points, from this base, by these parameters and this seed."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class State:
     """A tree after some acts. The values before it stay as they were.
 
@@ -55,7 +55,13 @@ class State:
     @classmethod
     def of(cls, result: Result) -> State:
         """What the machine found, before any act."""
-        return cls(result.scan, result.params, result, _kinds(result), Draft.of(result))
+        return cls(
+            scan=result.scan,
+            params=result.params,
+            result=result,
+            kind=_kinds(result),
+            draft=Draft.of(result),
+        )
 
 
 def _kinds(result: Result) -> Kinds:

@@ -48,7 +48,7 @@ WAYS, SLAB_M, SLAB_CELLS = 200, 0.10, 8000
 """Lawns are looked for in the fullest slab of so many directions, among so many cells."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Ground:
     """A plane through `middle` (3,), normal `up` (3,), and which cells (N,) are of it.
 
@@ -252,7 +252,14 @@ def _measured(plane: _Plane, xyz: Floats, held: Ints) -> Ground | None:
     along = plane.axes @ ways[:, 1]
     lowest = _lowest(plane, xyz[held])
     near = np.abs(lowest.height(xyz)) < 2 * plane.band
-    return Ground(lowest.normal, lowest.middle, near, along, float(length), float(width))
+    return Ground(
+        up=lowest.normal,
+        middle=lowest.middle,
+        cells=near,
+        along=along,
+        length=float(length),
+        width=float(width),
+    )
 
 
 def _lowest(plane: _Plane, xyz: Floats) -> _Plane:

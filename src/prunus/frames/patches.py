@@ -64,7 +64,7 @@ def cells_at(xyz: Floats, side: float) -> tuple[Ints, Ints]:
     return cell, count
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Patches:
     """What lies around some cells: variances (C, 3) ascending, and their axes (C, 3, 3), columns.
 
@@ -88,7 +88,7 @@ class Patches:
         products = offsets[:, :, None] * offsets[:, None, :]
         moments = _means(patch, products.reshape(-1, 9), count).reshape(-1, 3, 3)
         variance, axes = np.linalg.eigh(moments - mean[:, :, None] * mean[:, None, :])
-        return cls(centers, count, np.maximum(variance, 0), axes)
+        return cls(xyz=centers, count=count, variance=np.maximum(variance, 0), axes=axes)
 
     @cached_property
     def linear(self) -> Floats:
@@ -108,11 +108,21 @@ class Patches:
 
     def take(self, rows: Bools) -> Patches:
         """Some of the patches."""
-        return Patches(self.xyz[rows], self.count[rows], self.variance[rows], self.axes[rows])
+        return Patches(
+            xyz=self.xyz[rows],
+            count=self.count[rows],
+            variance=self.variance[rows],
+            axes=self.axes[rows],
+        )
 
     def turned(self, rotation: Floats) -> Patches:
         """The same patches in another frame."""
-        return Patches(self.xyz @ rotation.T, self.count, self.variance, rotation @ self.axes)
+        return Patches(
+            xyz=self.xyz @ rotation.T,
+            count=self.count,
+            variance=self.variance,
+            axes=rotation @ self.axes,
+        )
 
 
 def _means(patch: Ints, values: Floats, count: Ints) -> Floats:

@@ -58,7 +58,7 @@ LYING_SURER = 0.015
 """A tree lies where it is so much surer in another frame (`frames.upright.sureness`)."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Evidence:
     """What tells a tree from what is none.
 
@@ -100,7 +100,18 @@ class Evidence:
         form = 1.0 if result.trust is None else result.trust.form
         odd = form < USUAL_FORM or wood < USUAL_WOOD or 0 < rise < UPRIGHT_RISE
         lying = odd and lies(result.scan)
-        return cls(length, across, explained, linear, rise, step, trunk, wood, sure, lying)
+        return cls(
+            length=length,
+            across=across,
+            explained=explained,
+            linear=linear,
+            rise=rise,
+            step=step,
+            trunk=trunk,
+            wood=wood,
+            sure=sure,
+            lies=lying,
+        )
 
     def check(self) -> None:
         """Raise NoTreeError where it is no tree."""

@@ -17,7 +17,7 @@ from prunus.io.clouds.cloud_file import read_cloud as read_file
 from prunus.model import FRAMES, Floats, PointCloud
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Scan:
     """A cloud in the house frame, the file it came from, and notes on how it was read.
 
@@ -52,7 +52,7 @@ def open_scan(path: str | Path, frame: str = "auto", unit: str | None = None) ->
     stance = _stance(file.xyz, frame)
     cloud = PointCloud.from_xyz(file.xyz, stance.frame, file.rgb, stance.turn)
     notes = [*file.notes, *stance.notes]
-    return Scan(cloud, file, stance.frame, notes, asked=(frame, unit))
+    return Scan(cloud=cloud, file=file, frame=stance.frame, notes=notes, asked=(frame, unit))
 
 
 def read_cloud(path: str | Path, frame: str = "auto", unit: str | None = None) -> PointCloud:

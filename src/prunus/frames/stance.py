@@ -19,7 +19,7 @@ VIEWER_M = 15.0
 """A scan whose origin is so near to its middle may have been taken from there."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Stance:
     """A named frame, the further rotation (3, 3) to the house frame, and notes on how both came.
 
@@ -62,14 +62,20 @@ def find_stance(xyz: Floats, frame: str = "auto", because: str = "") -> Stance:
         if tilt:
             notes.append(f"levelled by {tilt:.0f} degrees: so far the ground is tilted")
     if told and frame in ROW_TOLD:
-        return Stance(frame, level, notes, others, grounded)
+        return Stance(frame=frame, turn=level, notes=notes, others=others, grounded=grounded)
     house = level @ FRAMES[frame]
     angle = row_turn(rest.turned(house), wood.turned(house))
     if angle:
         viewer = house @ -cells.middle
         angle = _facing(angle, viewer)
         notes.append(f"turned by {math.degrees(angle):.0f} degrees about Z, to the row")
-    return Stance(frame, turned(np.array([0.0, 0.0, angle])) @ level, notes, others, grounded)
+    return Stance(
+        frame=frame,
+        turn=turned(np.array([0.0, 0.0, angle])) @ level,
+        notes=notes,
+        others=others,
+        grounded=grounded,
+    )
 
 
 def _facing(angle: float, viewer: Floats) -> float:

@@ -51,7 +51,7 @@ CLOUD_ERR = 0.004
 """Standard deviation of a sample of a partial cloud, metres, any direction."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Threads:
     """S samples of branch axes in the view's frame: xyz (S, 3), axis (S, 3), doubt (S, 3, 3).
 
@@ -78,13 +78,20 @@ def threads_of(seen: Seen, rng: np.random.Generator) -> Threads:
     if seen.pixel == 0:
         middle = seen.xyz.mean(axis=0) if len(seen.xyz) else np.zeros(3)
         doubt = np.broadcast_to(CLOUD_ERR**2 * np.eye(3), (int(kept.sum()), 3, 3))
-        return Threads(drawn[rows[kept]], axis[rows[kept]], np.ascontiguousarray(doubt), middle)
+        return Threads(
+            xyz=drawn[rows[kept]],
+            axis=axis[rows[kept]],
+            doubt=np.ascontiguousarray(doubt),
+            held=middle,
+        )
     ray = surface / np.maximum(np.linalg.norm(surface, axis=1, keepdims=True), TINY)
     wide = _half_width(surface - drawn, axis, ray, start, near)
     xyz, axis, ray, line = drawn[rows], axis[rows], ray[rows], line[rows]
     xyz = xyz + _to_axis(xyz, axis, ray, wide, seen.pixel)
     kept &= np.abs((axis * ray).sum(axis=1)) <= HEAD_ON
-    return Threads(xyz[kept], axis[kept], _doubt(xyz, ray, wide, line)[kept], np.zeros(3))
+    return Threads(
+        xyz=xyz[kept], axis=axis[kept], doubt=_doubt(xyz, ray, wide, line)[kept], held=np.zeros(3)
+    )
 
 
 def _half_width(off: Floats, axis: Floats, ray: Floats, start: Ints, near: Ints) -> Floats:

@@ -36,7 +36,7 @@ TINY = 1e-3
 _Fault = tuple[float, str]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Placed:
     """What became of a view: its refined pose, and the evidence.
 
@@ -127,9 +127,17 @@ def _try(
     for k, v in enumerate(inside):
         moved, turned = went[k]
         placed[v] = Placed(
-            held[v].name, poses[k], len(held[v].xyz), held[v].flying, float(before.apart[v]),
-            float(fit.apart[k]), float(fit.agree[k]), moved, math.degrees(turned), faults[k][1],
-        )  # fmt: skip
+            name=held[v].name,
+            pose=poses[k],
+            points=len(held[v].xyz),
+            flying=held[v].flying,
+            before=float(before.apart[v]),
+            after=float(fit.apart[k]),
+            agree=float(fit.agree[k]),
+            moved=moved,
+            turned=math.degrees(turned),
+            refused=faults[k][1],
+        )
     return placed, [fault[0] for fault in faults]
 
 

@@ -28,7 +28,7 @@ STILL = 2e-6
 """Steps under this (radians, metres) end a stage."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Stage:
     """Partners within `reach` metres, axes alike in their cosine, and how robust (deviations)."""
 
@@ -39,9 +39,9 @@ class Stage:
 
 
 STAGES = (
-    Stage(0.08, 0.80, 4.0, 8),
-    Stage(0.04, 0.90, 3.0, 6),
-    Stage(0.02, 0.94, 2.5, 12),
+    Stage(reach=0.08, alike=0.80, scale=4.0, steps=8),
+    Stage(reach=0.04, alike=0.90, scale=3.0, steps=6),
+    Stage(reach=0.02, alike=0.94, scale=2.5, steps=12),
 )
 """From coarse to fine."""
 WIDE, CLOSE = STAGES[0], STAGES[-1]

@@ -16,7 +16,7 @@ COMPANY = 2
 """A pixel with fewer of its eight neighbours at its depth flies."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Seen:
     """The points xyz (Q, 3) of a view in its own frame, rgb (Q, 3) or None, and its nominal pose.
 
@@ -35,7 +35,9 @@ class Seen:
 def seen(view: RigView) -> Seen:
     """The points of a view; those of a depth image without its flying pixels."""
     if isinstance(view, CloudView):
-        return Seen(view.name, view.xyz, view.rgb, view.nominal, pixel=0.0, flying=0)
+        return Seen(
+            name=view.name, xyz=view.xyz, rgb=view.rgb, nominal=view.nominal, pixel=0.0, flying=0
+        )
     return _seen_by_camera(view)
 
 
@@ -45,7 +47,14 @@ def _seen_by_camera(view: DepthView) -> Seen:
     xyz = back_projected(np.where(kept, depth, 0.0), view.camera)
     rgb = None if view.rgb is None else view.rgb[kept]
     flying = int((depth > 0).sum() - kept.sum())
-    return Seen(view.name, xyz, rgb, view.nominal, 1 / view.camera.fx, flying)
+    return Seen(
+        name=view.name,
+        xyz=xyz,
+        rgb=rgb,
+        nominal=view.nominal,
+        pixel=1 / view.camera.fx,
+        flying=flying,
+    )
 
 
 def back_projected(depth: Floats, camera: Camera) -> Floats:

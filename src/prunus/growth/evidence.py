@@ -39,13 +39,14 @@ def seeded_graph(
     confidence = np.maximum(confidence_of(threads, edges), confidence_of(threads, edges[:, ::-1]))
     confidence[row[len(graph.edges) :]] = tree.confidence[1:]
     role = np.sqrt(threads.role[edges[:, 0]] * threads.role[edges[:, 1]])
-    return SeededGraph(
-        ScoredGraph(
-            CandidateGraph(_superpoints(cloud, of_voxel, voxels, graph.threads), edges), confidence,
-            _categories(role), "field",
-        ),
-        orchard.main, np.sort(tree.superpoint[_tips(tree)]),
-    )  # fmt: skip
+    superpoints = _superpoints(cloud, of_voxel, voxels, graph.threads)
+    scored = ScoredGraph(
+        candidates=CandidateGraph(superpoints, edges),
+        confidence=confidence,
+        category=_categories(role),
+        scorer="field",
+    )
+    return SeededGraph(scored, orchard.main, np.sort(tree.superpoint[_tips(tree)]))
 
 
 def _superpoints(

@@ -35,7 +35,7 @@ THIN = 0.005
 """Metres: the radius of tubes and cylinders where it is unknown."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Format:
     """A kind of file for skeletons: how it is written, what it has no place for, what it needs.
 
@@ -58,30 +58,38 @@ class Format:
 
 NAMES_ONLY = "labels are but the names of meshes and materials"
 FORMATS: dict[str, Format] = {
-    ".json": Format(write_skeleton, (), ()),
-    ".swc": Format(write_swc, needs=(), remark="labels are types 16 to 19; an unknown radius is 0"),
-    ".ply": Format(write_ply, needs=(), remark="an unknown radius is 0"),
+    ".json": Format(write=write_skeleton, lacks=(), needs=()),
+    ".swc": Format(
+        write=write_swc, needs=(), remark="labels are types 16 to 19; an unknown radius is 0"
+    ),
+    ".ply": Format(write=write_ply, needs=(), remark="an unknown radius is 0"),
     ".dxf": Format(
-        write_dxf,
-        ("confidence", "superpoint", "radius"),
-        ("edge",),
-        "labels are layers and colours",
+        write=write_dxf,
+        lacks=("confidence", "superpoint", "radius"),
+        needs=("edge",),
+        remark="labels are layers and colours",
     ),
-    ".graphml": Format(write_graphml, (), ()),
-    ".glb": Format(write_gltf, remark=NAMES_ONLY, names_branches=True),
-    ".gltf": Format(write_gltf, remark=NAMES_ONLY, names_branches=True),
-    ".obj": Format(write_obj, remark=NAMES_ONLY, names_branches=True),
+    ".graphml": Format(write=write_graphml, lacks=(), needs=()),
+    ".glb": Format(write=write_gltf, remark=NAMES_ONLY, names_branches=True),
+    ".gltf": Format(write=write_gltf, remark=NAMES_ONLY, names_branches=True),
+    ".obj": Format(write=write_obj, remark=NAMES_ONLY, names_branches=True),
     ".mtg": Format(
-        write_mtg, ("superpoint",), ("edge",), "labels are the classes T, S, L, B", True
+        write=write_mtg,
+        lacks=("superpoint",),
+        needs=("edge",),
+        remark="labels are the classes T, S, L, B",
+        names_branches=True,
     ),
-    ".cylinders.csv": Format(write_cylinders, ("superpoint",)),
+    ".cylinders.csv": Format(write=write_cylinders, lacks=("superpoint",)),
     ".treeqsm.csv": Format(
-        write_treeqsm,
-        ("confidence", "superpoint", "label"),
+        write=write_treeqsm,
+        lacks=("confidence", "superpoint", "label"),
         remark="no mad, no SurfCov: nothing was fitted",
     ),
-    ".txt": Format(write_treetext, remark="the tree text of raycloudtools; labels are 0 to 3"),
-    ".mcap": Format(write_mcap, remark="labels are the namespaces of the markers"),
+    ".txt": Format(
+        write=write_treetext, remark="the tree text of raycloudtools; labels are 0 to 3"
+    ),
+    ".mcap": Format(write=write_mcap, remark="labels are the namespaces of the markers"),
 }
 """By the ending of the file."""
 
@@ -166,7 +174,10 @@ def _cuts_in(
     turns = facing(normal, np.array(way).reshape(-1, 3))
     review = np.array([cut.needs_review for cut in plan.cuts], np.bool_)
     looked = f"{len(review)} cuts, {int(review.sum())} of them in /cuts/review, to be looked at"
-    return CutPoses([cut.id for cut in plan.cuts], places, turns, review), [*notes, looked]
+    return CutPoses(ids=[cut.id for cut in plan.cuts], places=places, turns=turns, review=review), [
+        *notes,
+        looked,
+    ]
 
 
 def kind_of(target: Path) -> str:

@@ -56,7 +56,7 @@ class _Element:
         return any(prop.count for prop in self.properties)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class _Header:
     form: str
     elements: list[_Element]
@@ -130,7 +130,7 @@ def _header(content: bytes, path: Path) -> _Header:
     if not form:
         raise PrunusError(f"{path}: the PLY header names no format; expected {sorted(ORDERS)}")
     _check_names(elements, path)
-    return _Header(form, elements, comments, body)
+    return _Header(form=form, elements=elements, comments=comments, body=body)
 
 
 def _header_lines(content: bytes, path: Path) -> Iterator[tuple[str, int]]:

@@ -87,7 +87,7 @@ def _view(record: ViewRecord, file: Path, where: str) -> RigView:
 
 def _cloud(path: Path, pose: RigidMotion) -> CloudView:
     held = read_cloud(path)
-    return CloudView(as_text(path.name), held.xyz, pose, held.rgb)
+    return CloudView(name=as_text(path.name), xyz=held.xyz, nominal=pose, rgb=held.rgb)
 
 
 def _depth(record: ViewRecord, file: Path, where: str, pose: RigidMotion) -> DepthView:
@@ -101,7 +101,14 @@ def _depth(record: ViewRecord, file: Path, where: str, pose: RigidMotion) -> Dep
         colour = read_colour(file.parent / record.colour, expected)
     if record.mask is not None:
         mask = read_mask(file.parent / record.mask, expected)
-    return DepthView(as_text(path.name), depth, _camera(record, file, where), pose, colour, mask)
+    return DepthView(
+        name=as_text(path.name),
+        depth=depth,
+        camera=_camera(record, file, where),
+        nominal=pose,
+        rgb=colour,
+        mask=mask,
+    )
 
 
 def _camera(record: ViewRecord, file: Path, where: str) -> Camera:

@@ -69,7 +69,7 @@ class CandidateGraph:
         return self.superpoints.xyz
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ScoredGraph:
     """Confidence (E,) in [0, 1] for each candidate edge, and the name of who gave it.
 
@@ -92,7 +92,12 @@ class ScoredGraph:
         cls, candidates: CandidateGraph, confidence: Floats, scorer: str
     ) -> ScoredGraph:
         """The graph of a scorer that tells no categories."""
-        return cls(candidates, confidence, np.zeros((len(candidates.edges), 0)), scorer)
+        return cls(
+            candidates=candidates,
+            confidence=confidence,
+            category=np.zeros((len(candidates.edges), 0)),
+            scorer=scorer,
+        )
 
     @property
     def xyz(self) -> Floats:

@@ -9,7 +9,7 @@ from prunus.model import Label, Skeleton
 from prunus.model.branches import branches
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Leader:
     """One leader in the house frame, metres.
 
@@ -42,6 +42,14 @@ def leaders(skeleton: Skeleton) -> list[Leader]:
     found.sort()
     before = [math.nan, *(leader[0] for leader in found)]
     return [
-        Leader(top, x, length, height, lean, x - left, shoots)
+        Leader(
+            row=top,
+            x=x,
+            length=length,
+            height=height,
+            lean=lean,
+            spacing=x - left,
+            side_branches=shoots,
+        )
         for left, (x, top, length, height, lean, shoots) in zip(before, found, strict=False)
     ]

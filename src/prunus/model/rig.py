@@ -14,7 +14,7 @@ from prunus.model.arrays import Bools, Bytes, Floats, frozen
 from prunus.model.cloud import RigidMotion
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Camera:
     """Focal lengths and principal point, pixels; the middle of the first pixel is at 0.5, 0.5."""
 
@@ -24,7 +24,7 @@ class Camera:
     cy: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class DepthView:
     """A depth image (H, W), metres along z, 0 = nothing; optional rgb (H, W, 3) and mask (H, W).
 
@@ -47,7 +47,7 @@ class DepthView:
             object.__setattr__(self, "mask", frozen(self.mask, np.bool_, (H, W)))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class CloudView:
     """A partial cloud: points xyz (Q, 3), metres, in the frame of the view; optional rgb (Q, 3)."""
 

@@ -77,7 +77,7 @@ class Lines:
     edges: Ints
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Skeleton:
     """A tree of M nodes: row 0 is the base, and every other row hangs on an earlier one.
 
@@ -133,12 +133,14 @@ class Skeleton:
         nodes = frozen(xyz, np.float64, (None, 3), "xyz")
         rows, unknown = len(nodes), np.full(len(nodes), np.nan)
         return cls(
-            nodes,
-            _column("parent", parent, rows),
-            _column("label", label, rows),
-            unknown if confidence is None else _column("confidence", confidence, rows),
-            unknown if radius is None else _column("radius", radius, rows),
-            np.full(rows, -1) if superpoint is None else _column("superpoint", superpoint, rows),
+            xyz=nodes,
+            parent=_column("parent", parent, rows),
+            label=_column("label", label, rows),
+            confidence=unknown if confidence is None else _column("confidence", confidence, rows),
+            radius=unknown if radius is None else _column("radius", radius, rows),
+            superpoint=np.full(rows, -1)
+            if superpoint is None
+            else _column("superpoint", superpoint, rows),
         )
 
     def __len__(self) -> int:
@@ -177,12 +179,12 @@ class Skeleton:
         parent = (np.cumsum(kept) - 1)[self.parent[rows]]
         parent[0] = -1
         return Skeleton(
-            self.xyz[rows],
-            parent,
-            self.label[rows],
-            self.confidence[rows],
-            self.radius[rows],
-            self.superpoint[rows],
+            xyz=self.xyz[rows],
+            parent=parent,
+            label=self.label[rows],
+            confidence=self.confidence[rows],
+            radius=self.radius[rows],
+            superpoint=self.superpoint[rows],
         )
 
     def moved(self, motion: RigidMotion) -> Skeleton:

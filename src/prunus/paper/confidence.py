@@ -62,7 +62,9 @@ def score_edges(candidates: CandidateGraph, scorer: EdgeScorer) -> ScoredGraph:
     category = _shares(f"{name}: category", told[1], (size, CATEGORIES))
     if not (np.abs(category.sum(axis=1) - 1) < SUM_ERROR).all():
         raise PrunusError(f"{name}: category: not all rows sum to 1; expected probabilities")
-    return ScoredGraph(candidates, confidence, category, scorer.name)
+    return ScoredGraph(
+        candidates=candidates, confidence=confidence, category=category, scorer=scorer.name
+    )
 
 
 CATEGORIES = len(Label) + 1

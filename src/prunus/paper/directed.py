@@ -9,7 +9,7 @@ import numpy as np
 from prunus.model import Floats, Ints, SeededGraph
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Directed:
     """Directed edges d, D = 2 E of them, sorted by tail, then head.
 
@@ -34,13 +34,13 @@ class Directed:
         out_start = np.searchsorted(tail, np.arange(len(seeded.xyz) + 1))
         vector = seeded.xyz[head] - seeded.xyz[tail]
         return cls(
-            tail,
-            head,
-            out_start,
-            order % max(len(seeded.edges), 1),
-            vector,
-            np.linalg.norm(vector, axis=1),
-            np.concatenate([[0], np.cumsum(np.diff(out_start)[head])]),
+            tail=tail,
+            head=head,
+            out_start=out_start,
+            edge=order % max(len(seeded.edges), 1),
+            vector=vector,
+            length=np.linalg.norm(vector, axis=1),
+            pair_start=np.concatenate([[0], np.cumsum(np.diff(out_start)[head])]),
         )
 
     @property

@@ -27,7 +27,7 @@ from prunus.paper.seeds import find_tips
 from prunus.params import Parameters, checked_params, checked_seed
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class GraphSkeleton:
     """What `search_graph` found.
 
@@ -89,7 +89,13 @@ def search_graph(
     back = graph.candidates.superpoints.cloud.to_input
     pairs = found.skeleton.superpoint[found.skeleton.edges]
     words = np.array([Label(label).word for label in found.skeleton.label[1:]], dtype=np.str_)
-    return GraphSkeleton(pairs, words, found.score, found.history, found.skeleton.moved(back))
+    return GraphSkeleton(
+        edges=pairs,
+        labels=words,
+        score=found.score,
+        history=found.history,
+        skeleton=found.skeleton.moved(back),
+    )
 
 
 def _of_search(params: Any) -> Any:

@@ -16,7 +16,7 @@ from prunus.params import Parameters
 Edge = tuple[int, int]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class _FreeGraph:
     """Confident edges of superpoints outside the skeleton, and what joins them to it."""
 
@@ -82,7 +82,9 @@ def _free_graph(
             confidence[a, b] = float(seeded.confidence[e])
             if b not in taken:
                 neighbours.setdefault(a, []).append(b)
-    return _FreeGraph(seeded.xyz, confidence, neighbours, params), piece
+    return _FreeGraph(
+        xyz=seeded.xyz, confidence=confidence, neighbours=neighbours, params=params
+    ), piece
 
 
 def _is_sideways(vector: Floats, skeleton: Skeleton, row: int, params: Parameters) -> bool:

@@ -18,7 +18,7 @@ STEP = 0.01
 TINY = 1e-9
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Centrelines:
     """S stations xyz (S, 3) of B lines; those of line b stand in the rows start[b] to start[b + 1].
 
@@ -112,6 +112,10 @@ def lines_of(skeleton: Skeleton) -> tuple[Centrelines, list[Branch]]:
     parent = owner[foot]
     goes_on = (parent >= 0) & (end[np.maximum(parent, 0)] == foot)
     like = Centrelines(
-        np.zeros((0, 3)), np.zeros(1, np.int64), parent, goes_on, ~np.isin(end, foot)
+        xyz=np.zeros((0, 3)),
+        start=np.zeros(1, np.int64),
+        parent=parent,
+        goes_on=goes_on,
+        free=~np.isin(end, foot),
     )
     return joined([skeleton.xyz[branch.rows] for branch in found], like), found

@@ -21,7 +21,7 @@ from prunus.refine.smoothing import Shares, Ties, smoothed
 from prunus.refine.tips import drawn_out, kept
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Round:
     """How near points are to be, and how firmly lines start on their parents, metres.
 
@@ -37,11 +37,11 @@ class Round:
 
 
 ROUNDS = (
-    Round(0.05, 0.030, 0.020, 3),
-    Round(0.05, 0.020, 0.020, 3),
-    Round(0.04, 0.012, 0.020, 2),
-    Round(0.04, 0.008, 0.010, 2),
-    Round(0.04, 0.006, 0.001, 1),
+    Round(reach=0.05, core=0.030, tied=0.020, every=3),
+    Round(reach=0.05, core=0.020, tied=0.020, every=3),
+    Round(reach=0.04, core=0.012, tied=0.020, every=2),
+    Round(reach=0.04, core=0.008, tied=0.010, every=2),
+    Round(reach=0.04, core=0.006, tied=0.001, every=1),
 )
 CORE = 2.0
 """Points over so many half widths beside a line hardly count."""
@@ -66,7 +66,7 @@ ALONE = 5
 """A line is held where the skeleton has it so many stations from any points."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Fit:
     """Lines, and at their stations the points (S,), weighted, and the radii.
 
@@ -111,7 +111,14 @@ def fitted(lines: Centrelines, label: Ints, least: Ints, xyz: Floats) -> Fit:
     unseen = np.full(len(lines.xyz), np.nan)
     starts = Starts.of(lines, label)
     nowhere = np.zeros(len(label), np.int64)
-    fit = Fit(lines, unseen, tapers(lines, label, unseen), nowhere, lines.xyz, np.zeros(len(label)))
+    fit = Fit(
+        lines=lines,
+        count=unseen,
+        tapers=tapers(lines, label, unseen),
+        foot=nowhere,
+        home=lines.xyz,
+        around=np.zeros(len(label)),
+    )
     for turn in ROUNDS:
         fit = _round(
             _evened(fit), label, least, xyz[:: turn.every], cameras, turn=turn, starts=starts
@@ -125,7 +132,14 @@ def _evened(fit: Fit) -> Fit:
     radius = carried(fit.tapers.radius, fit.lines, even)
     count = carried(np.nan_to_num(fit.count), fit.lines, even)
     home = np.column_stack([carried(column, fit.lines, even) for column in fit.home.T])
-    return Fit(even, count, replace(fit.tapers, radius=radius), fit.foot, home, fit.around)
+    return Fit(
+        lines=even,
+        count=count,
+        tapers=replace(fit.tapers, radius=radius),
+        foot=fit.foot,
+        home=home,
+        around=fit.around,
+    )
 
 
 def _round(
@@ -158,7 +172,12 @@ def _round(
     stays = kept(lines, was, turn.every * ribbons.count, _least(lines, foot, least))
     row = np.cumsum(stays) - 1
     return Fit(
-        axes.part(stays), ribbons.count[stays], found.part(stays), row[foot], home[stays], around
+        lines=axes.part(stays),
+        count=ribbons.count[stays],
+        tapers=found.part(stays),
+        foot=row[foot],
+        home=home[stays],
+        around=around,
     )
 
 
@@ -184,7 +203,7 @@ def _shares(front: Centrelines, inside: Bools, half: Floats, xyz: Floats, turn: 
     counts = (away <= CUT * core) & ~_beyond(front, before, xyz[near])
     fall = np.maximum(away / core - FLAT, 0.0) / (1 - FLAT)
     near, before, fall = near[counts], before[counts], fall[counts]
-    return Shares(xyz[near], before, share[near], 1 / (1 + fall**2) ** 2)
+    return Shares(xyz=xyz[near], before=before, share=share[near], weight=1 / (1 + fall**2) ** 2)
 
 
 FLAT = 0.5

@@ -86,7 +86,7 @@ class Unknown(IntEnum):
         return "" if self == Unknown.KNOWN else self.name.lower().replace("_", " ")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Tapers:
     """Radius and its standard deviation (S,), metres, at each station; `unknown` (S,), why not.
 
@@ -100,7 +100,12 @@ class Tapers:
 
     def part(self, stays: Bools) -> Tapers:
         """Those of these stations (S,) only."""
-        return Tapers(self.radius[stays], self.error[stays], self.unknown[stays], self.noise)
+        return Tapers(
+            radius=self.radius[stays],
+            error=self.error[stays],
+            unknown=self.unknown[stays],
+            noise=self.noise,
+        )
 
 
 def tapers(lines: Centrelines, label: Ints, half: Floats) -> Tapers:
@@ -114,14 +119,16 @@ def tapers(lines: Centrelines, label: Ints, half: Floats) -> Tapers:
     noise = _noise(half, first, shown)
     seen = np.isfinite(half)
     rows = np.flatnonzero(seen)
-    fit = _Fit(line[rows], share[rows], half[rows], noise * shown[rows], usual)
+    fit = _Fit(
+        line=line[rows], share=share[rows], half=half[rows], noise=noise * shown[rows], usual=usual
+    )
     ends, doubt = fit.solved(len(label))
     mix = np.column_stack([1 - share, share])
     radius = np.maximum((mix * ends[line]).sum(axis=1), LEAST)
     uneven = np.array([UNEVEN[Label(number)] for number in label])[line] * radius
     error = np.sqrt(np.einsum("si,sij,sj->s", mix, doubt[line], mix) + uneven**2)
     unknown = _unknown(lines, seen, fit.scatter(ends))
-    return Tapers(radius, error, unknown, noise)
+    return Tapers(radius=radius, error=error, unknown=unknown, noise=noise)
 
 
 def _noise(half: Floats, usual: Floats, shown: Floats) -> float:
@@ -133,7 +140,7 @@ def _noise(half: Floats, usual: Floats, shown: Floats) -> float:
     return float(np.sqrt(max(np.median(square), 0.0)))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class _Fit:
     """W half widths (W,) at shares (W,) of the way along lines (W,), in some noise."""
 

@@ -21,7 +21,7 @@ from prunus.refine.ribbons import supported
 TINY = 1e-9
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Refined:
     """The refined skeleton in the house frame, and what is known of each of its nodes (M,).
 
@@ -71,7 +71,13 @@ def refined(skeleton: Skeleton, cloud: PointCloud, likely: Floats | None = None)
     if len(skeleton) == 1:
         nothing = np.full(len(skeleton), int(Unknown.FEW_POINTS))
         unknown = np.full(len(skeleton), np.nan)
-        return Refined(skeleton.with_radius(unknown), unknown, nothing, nothing < 0, likely)
+        return Refined(
+            skeleton=skeleton.with_radius(unknown),
+            radius_error=unknown,
+            unknown=nothing,
+            seen=nothing < 0,
+            likely=likely,
+        )
     lines, found = lines_of(skeleton)
     label = np.array([int(branch.label) for branch in found])
     least = np.array([len(branch.rows) for branch in found])
@@ -103,11 +109,22 @@ def _assembled(skeleton: Skeleton, found: list[Branch], fit: Fit, likely: Floats
         np.where(known, values, np.nan)[station] for values in (taper.radius, taper.error)
     )
     tree = Skeleton(
-        lines.xyz[station], parent, skeleton.label[old], skeleton.confidence[old], radius,
-        np.where(stands, skeleton.superpoint[old], -1),
-    )  # fmt: skip
+        xyz=lines.xyz[station],
+        parent=parent,
+        label=skeleton.label[old],
+        confidence=skeleton.confidence[old],
+        radius=radius,
+        superpoint=np.where(stands, skeleton.superpoint[old], -1),
+    )
     seen, names = supported(lines, fit.count)[station], branch_names(skeleton, found)
-    return Refined(tree, error, taper.unknown[station], seen, likely[old], tuple(names))
+    return Refined(
+        skeleton=tree,
+        radius_error=error,
+        unknown=taper.unknown[station],
+        seen=seen,
+        likely=likely[old],
+        named=tuple(names),
+    )
 
 
 def _standing(line: Floats, places: Floats) -> Ints:

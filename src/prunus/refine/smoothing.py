@@ -18,7 +18,7 @@ STAYS = 0.012
 """Standard deviation, metres, of a centimetre of line without points from where it was."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Shares:
     """Q points xyz (Q, 3), each `share` (Q,) of the way from station `before` (Q,) to the next.
 

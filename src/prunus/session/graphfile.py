@@ -91,9 +91,18 @@ class GraphFile:
         except ValueError as error:
             raise PrunusError(f"{self.path}: {error}") from error
         return Result(
-            skeleton, graph, told.score, history, {}, params, seed, told.warnings, told.notes,
-            cloud, isolated,
-        )  # fmt: skip
+            in_house=skeleton,
+            graph=graph,
+            score=told.score,
+            history=history,
+            seconds={},
+            params=params,
+            seed=seed,
+            warnings=told.warnings,
+            notes=told.notes,
+            scan=cloud,
+            isolated=isolated,
+        )
 
 
 def read_graph(path: Path) -> GraphFile:
@@ -168,7 +177,12 @@ def _graph(arrays: Arrays, told: GraphRecord, cloud: PointCloud) -> SeededGraph:
     if category.ndim != 2 or category.shape[1] not in (0, len(Label) + 1):
         raise ValueError(f"category: of shape {category.shape}; expected (E, {len(Label) + 1})")
     candidates = CandidateGraph(own, _edges(arrays, len(own)))
-    scored = ScoredGraph(candidates, shares(arrays, "confidence"), category, told.scorer)
+    scored = ScoredGraph(
+        candidates=candidates,
+        confidence=shares(arrays, "confidence"),
+        category=category,
+        scorer=told.scorer,
+    )
     if told.base >= len(own):
         raise ValueError(f"told.base: found {told.base}; there are {len(own)} superpoints")
     return SeededGraph(scored, told.base, indices(arrays, "tips", len(own)))

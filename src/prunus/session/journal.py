@@ -109,7 +109,7 @@ def _line(path: Path, number: int, text: bytes) -> Line:
         move: Move = held["act"] if held in ({"act": "undo"}, {"act": "redo"}) else from_json(held)
     except PrunusError as error:
         raise PrunusError(f"{where}: {error}") from error
-    return Line(number, at, move, gives)
+    return Line(number=number, at=at, move=move, gives=gives)
 
 
 def _check_moves(path: Path, lines: tuple[Line, ...]) -> None:
@@ -165,4 +165,4 @@ def append(path: Path, end: End, move: Move, gives: str) -> tuple[Line, End]:
     now = datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
     told = {"act": move} if isinstance(move, str) else to_json(move)
     size = append_at(path, end.size, {"at": now, **told, "gives": gives})
-    return Line(end.number, now, move, gives), End(size, end.number + 1)
+    return Line(number=end.number, at=now, move=move, gives=gives), End(size, end.number + 1)

@@ -28,7 +28,7 @@ MINE: set[Path] = set()
 """The folders whose locks this process has."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Holder:
     """A process that has a tree open. `born`: when it started, where the system tells."""
 
@@ -42,7 +42,13 @@ class Holder:
     def me(cls) -> Holder:
         """The process that asks."""
         now = datetime.now(UTC).isoformat(timespec="seconds")
-        return cls(os.getpid(), socket.gethostname(), _user(), now, _born(os.getpid()))
+        return cls(
+            pid=os.getpid(),
+            host=socket.gethostname(),
+            user=_user(),
+            since=now,
+            born=_born(os.getpid()),
+        )
 
     @property
     def told(self) -> str:
@@ -123,11 +129,11 @@ def _holder(held: bytes) -> Holder | None:
     try:
         values: dict[str, Any] = json.loads(held)
         return Holder(
-            int(values["pid"]),
-            str(values["host"]),
-            str(values["user"]),
-            str(values["since"]),
-            values.get("born"),
+            pid=int(values["pid"]),
+            host=str(values["host"]),
+            user=str(values["user"]),
+            since=str(values["since"]),
+            born=values.get("born"),
         )
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError):
         return None

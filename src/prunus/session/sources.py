@@ -22,7 +22,7 @@ from prunus.session.journal import Head
 Point = tuple[float, float, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Settings:
     """How the chain is run on an input, see `open_scan` and `skeletonize`, and where scans lie."""
 
@@ -33,7 +33,7 @@ class Settings:
     scans: Path | None = field(default=None, compare=False)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Source:
     """A cloud file, how it is run, the base given to the chain, and the skeleton it should give."""
 
@@ -47,7 +47,7 @@ Kept = Callable[[Scan, Settings], tuple[Scan, Result] | None]
 """Finds what the machine made of a scan before, and the scan as it was turned then."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Machine:
     """What the chain made of an input, from which base, and what a person should know of it."""
 
@@ -65,7 +65,7 @@ def source_from(path: Path, settings: Settings) -> Source:
     the same errors.
     """
     if path.suffix.lower() != ".json":
-        return Source(path, settings)
+        return Source(path=path, settings=settings)
     skeleton, record = read_record(path)
     if record.input is None:
         raise PrunusError(f"{path}: does not say of which cloud it is; open the cloud instead")
@@ -76,7 +76,7 @@ def source_from(path: Path, settings: Settings) -> Source:
     own = replace(settings, params=params, seed=seed)
     with naming(path):
         cloud = original_of(record.input, path.parent, settings.scans)
-    return Source(cloud, own, expected=skeleton)
+    return Source(path=cloud, settings=own, expected=skeleton)
 
 
 def unseen(scan: Scan) -> None:
@@ -100,7 +100,10 @@ def run(
     settings, base, expected, notes = source.settings, source.base, source.expected, list[str]()
     if head is not None:
         settings = Settings(
-            head.frame, head.unit, Parameters.of_record(head.params, "journal"), head.seed
+            frame=head.frame,
+            unit=head.unit,
+            params=Parameters.of_record(head.params, "journal"),
+            seed=head.seed,
         )
         base, expected = head.base, None
         if settings != source.settings:
@@ -126,7 +129,13 @@ def run(
                 "the chain gives another skeleton than the file has (by another version, scorer "
                 "or frame?): it is the one shown"
             )
-    return Machine(scan, result, settings, base, [*scan.notes, *result.notes, *notes])
+    return Machine(
+        scan=scan,
+        result=result,
+        settings=settings,
+        base=base,
+        notes=[*scan.notes, *result.notes, *notes],
+    )
 
 
 def _chain(path: Path, scan: Scan, settings: Settings, base: Point | None) -> Result:

@@ -11,7 +11,7 @@ from prunus.editing.acts import Act
 Move = Act | Literal["undo", "redo"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Line:
     """A further line: its number in the file, when, what, and a digest of what it gave."""
 

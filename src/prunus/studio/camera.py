@@ -21,7 +21,7 @@ VIEWS = {
 """Where the eye is, seen from the tree, and the axes across, up and in depth."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Eye:
     """A camera: position (3,), rotation (3, 3) with columns right, down, forward; house frame.
 

@@ -185,9 +185,12 @@ class Desk:
         camera = self.client.camera
         rotation = np.asarray(SO3(np.asarray(camera.wxyz)).as_matrix(), np.float64)
         return Eye(
-            np.asarray(camera.position), rotation, camera.fov,
-            int(camera.image_width), int(camera.image_height),
-        )  # fmt: skip
+            position=np.asarray(camera.position),
+            rotation=rotation,
+            fov=camera.fov,
+            width=int(camera.image_width),
+            height=int(camera.image_height),
+        )
 
     def pick(self, ray: Ray) -> None:
         """Take the edge at a ray as the picked one; none where none is near."""

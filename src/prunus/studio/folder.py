@@ -34,8 +34,8 @@ class FolderPanel:
         if len(self.desk.trees) == 1:
             return []
         return [
-            Key("pageup", "Previous tree", lambda: self._step("previous")),
-            Key("pagedown", "Next tree", lambda: self._step("next")),
+            Key(key="pageup", text="Previous tree", does=lambda: self._step("previous")),
+            Key(key="pagedown", text="Next tree", does=lambda: self._step("next")),
         ]
 
     def tell(self) -> None:

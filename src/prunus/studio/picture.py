@@ -36,7 +36,7 @@ KINDS: dict[Kind, Colour] = {
 """The colour of each kind of points, in the order of the kinds."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Picture:
     """A scan (P), what each point is (P,), and, once the chain has run, skeleton and graph.
 

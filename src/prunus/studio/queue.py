@@ -13,7 +13,7 @@ from prunus.model import Ints, RigidMotion, ScoredGraph
 Verdict = tuple[bool, Category | None]
 
 
-@dataclass
+@dataclass(kw_only=True)
 class Queue:
     """One after another, those nearest to a confidence of one half first.
 
@@ -32,7 +32,7 @@ class Queue:
     def of(cls, graph: ScoredGraph, to_input: RigidMotion, path: Path, head: LabelHead) -> Queue:
         """The queue of a graph, at its first edge without a label in the file at `path`."""
         order = np.argsort(np.abs(graph.confidence - 0.5), kind="stable")
-        queue = cls(graph, to_input, path, head, order)
+        queue = cls(graph=graph, to_input=to_input, path=path, head=head, order=order)
         if path.exists():
             number = {pair: n for n, pair in enumerate(map(tuple, graph.edges.tolist()))}
             queue.given = {

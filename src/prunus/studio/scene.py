@@ -35,7 +35,7 @@ LAYERS = ("points", *(label.word for label in Label), "tips", "base", "superpoin
 AT_FIRST = frozenset(LAYERS[:7]) - {"tips"} | {"base"}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Wishes:
     """What the person wants to see: layers by name, colour and number and size of the points."""
 
@@ -52,7 +52,7 @@ def nearer(name: str) -> float:
     return NEARER[f"/{name.split('/')[1]}"]
 
 
-@dataclass
+@dataclass(kw_only=True)
 class Drawn:
     """A node of the scene as the browser has it."""
 
@@ -152,7 +152,9 @@ class Painter:
                 name, held, colour, thickness=width, thickness_units="screen",
                 scale=1 - nearer(name),
             )  # fmt: skip
-            self.drawn[name] = Drawn(held.tobytes(), (colour, width), b"", handle)
+            self.drawn[name] = Drawn(
+                places=held.tobytes(), form=(colour, width), colours=b"", handle=handle
+            )
 
     def dots(
         self, name: str, xyz: Floats, colours: Bytes | Colour, size: float, shown: bool
@@ -168,7 +170,12 @@ class Painter:
                 name, held, colour, point_size=size, point_shape="circle", point_shading="flat",
                 precision="float32", scale=1 - nearer(name),
             )  # fmt: skip
-            self.drawn[name] = Drawn(held.tobytes(), (colour.shape, size), colour.tobytes(), handle)
+            self.drawn[name] = Drawn(
+                places=held.tobytes(),
+                form=(colour.shape, size),
+                colours=colour.tobytes(),
+                handle=handle,
+            )
 
     def mesh(
         self, name: str, parts: list[tuple[Floats, Ints]], colour: Colour, opacity: float
@@ -187,7 +194,9 @@ class Painter:
                 name, held, faces.astype(np.uint32), color=colour, opacity=opacity, side="double",
                 material="toon3", cast_shadow=False, receive_shadow=False, scale=1 - nearer(name),
             )  # fmt: skip
-            self.drawn[name] = Drawn(held.tobytes(), (colour, opacity), b"", handle)
+            self.drawn[name] = Drawn(
+                places=held.tobytes(), form=(colour, opacity), colours=b"", handle=handle
+            )
 
     def clear(self) -> None:
         """Take all away."""

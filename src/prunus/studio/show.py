@@ -61,10 +61,10 @@ class Show:
         """The views."""
         desk = self.desk
         return [
-            Key("F", "Front view", lambda: desk.view("front")),
-            Key("R", "View from the right", lambda: desk.view("side")),
-            Key("T", "View from the top", lambda: desk.view("top")),
-            Key("C", "Close view of what is picked", desk.close_up),
+            Key(key="F", text="Front view", does=lambda: desk.view("front")),
+            Key(key="R", text="View from the right", does=lambda: desk.view("side")),
+            Key(key="T", text="View from the top", does=lambda: desk.view("top")),
+            Key(key="C", text="Close view of what is picked", does=desk.close_up),
         ]
 
     def fit(self, picture: Picture) -> None:

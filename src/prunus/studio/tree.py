@@ -125,7 +125,7 @@ class Tree:
         """What there is to draw; None before the file is read."""
         with self.lock:
             if self.work is None:
-                return None if self.cloud is None else Picture(self.cloud)
+                return None if self.cloud is None else Picture(scan=self.cloud)
             return picture_of(self.work.state, self.work.machine)
 
     def edits(self) -> Edits | None:
@@ -179,6 +179,11 @@ def picture_of(state: State, machine: Skeleton) -> Picture:
     """The picture of a state of the work."""
     draft = state.draft
     return Picture(
-        state.scan, state.kind, draft.skeleton(), state.result.graph, machine, draft.nodes,
-        branch_names(draft),
-    )  # fmt: skip
+        scan=state.scan,
+        kind=state.kind,
+        skeleton=draft.skeleton(),
+        graph=state.result.graph,
+        machine=machine,
+        nodes=draft.nodes,
+        names=branch_names(draft),
+    )

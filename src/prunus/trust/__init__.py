@@ -23,7 +23,7 @@ WOOD = 0.60
 """What is less likely a bare tree lowers all trust, and is said."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Trust:
     """How likely a skeleton is right.
 
@@ -61,6 +61,8 @@ def trust_in(known: Known, model: Model | None = None) -> Trust:
     told = zip(found, of_branches(known, form), strict=True)
     branch = np.array([model.parts.branch[one.label](said) for one, said in told])
     edge = np.array([np.nan, *map(model.parts.edge, of_edges(known, branch, form))])
-    own = Trust(edge, branch, float(np.nanmean(edge)), meant, wood, form)
+    own = Trust(
+        edge=edge, branch=branch, tree=float(np.nanmean(edge)), meant=meant, wood=wood, form=form
+    )
     sure = own.whole
     return replace(own, edge=sure * edge, branch=sure * branch, tree=sure * own.tree)

@@ -64,7 +64,12 @@ def test_every_cut_is_a_pose_in_the_topic_of_its_kind_and_has_its_id_there(
     places = np.arange(3.0 * len(review)).reshape(-1, 3)
     ways = np.where(np.arange(len(review))[:, None] % 2, (0, 0, -1.0), (0, 0, 1.0))
     ids = [f"spacing:leader-{number}" for number in range(len(review))]
-    cuts = CutPoses(ids, places, turned_from_z(ways.reshape(-1, 3)), np.array(review, bool))
+    cuts = CutPoses(
+        ids=ids,
+        places=places,
+        turns=turned_from_z(ways.reshape(-1, 3)),
+        review=np.array(review, bool),
+    )
     write_mcap(tmp_path / "t.mcap", skeleton, cuts=cuts)
     told = said(tmp_path / "t.mcap")
     assert set(told) == {"/tree", "/cuts", "/cuts/review", "/cuts/ids"}

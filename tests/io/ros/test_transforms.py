@@ -23,7 +23,9 @@ def joint(parent: str, *places: float) -> Joint:
     time = (10 + np.arange(len(places))) * 10**9
     place = np.zeros((len(places), 3))
     place[:, 0] = places
-    return Joint(parent, time, place, np.tile([0.0, 0, 0, 1], (len(places), 1)))
+    return Joint(
+        parent=parent, time=time, place=place, turn=np.tile([0.0, 0, 0, 1], (len(places), 1))
+    )
 
 
 @given(TURNS)

@@ -32,7 +32,7 @@ PLAUSIBLE_CM = 600.0
 """A scan wider than so many units is not in centimetres either."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FileCloud:
     """What a file holds: xyz (P, 3) in metres in its own frame, rgb (P, 3) or None, its sha256.
 
@@ -65,7 +65,7 @@ def read_cloud(path: str | Path, unit: str | None = None) -> FileCloud:
     if is_bag(source.path):
         with np.errstate(all="ignore"):
             xyz, rgb, notes = read_bag(source)
-        held = only_real(Content(xyz, rgb, notes=notes), source.full)
+        held = only_real(Content(xyz=xyz, rgb=rgb, notes=notes), source.full)
         sha256 = digest_of(source.path)
     else:
         content = _file_of(source.path)
@@ -76,7 +76,14 @@ def read_cloud(path: str | Path, unit: str | None = None) -> FileCloud:
     metres, notes = _metres(held, asked, source)
     notes += check_steps(held.xyz, metres, source.full)
     xyz = held.xyz if metres == 1 else held.xyz * metres
-    return FileCloud(source.full, xyz, held.rgb, sha256, [*held.notes, *notes], unit_of(metres))
+    return FileCloud(
+        path=source.full,
+        xyz=xyz,
+        rgb=held.rgb,
+        sha256=sha256,
+        notes=[*held.notes, *notes],
+        unit=unit_of(metres),
+    )
 
 
 def _file_of(path: Path) -> bytes:

@@ -46,7 +46,7 @@ BRACKETED = re.compile(r"\s*[\[(]\s*([^\])]*?)\s*[\])]$")
 """A unit behind a name: `x[m]`, `Y (mm)`."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Content:
     """What a file holds: xyz (P, 3) in its own unit, rgb (P, 3) or None, and what it says of both.
 
@@ -83,7 +83,9 @@ def content_of(table: Any, names: Sequence[str], path: Path) -> Content:
     colours, notes = colours_among(names), list[str]()
     if colours is not None and rgb is None:
         notes.append(f"no colours: {', '.join(names[k] for k in colours)} hold something else")
-    return Content(xyz, rgb, unit_among(names, axes_among(names, path), path), notes)
+    return Content(
+        xyz=xyz, rgb=rgb, metres=unit_among(names, axes_among(names, path), path), notes=notes
+    )
 
 
 def axes_among(names: Sequence[str], path: Path | str) -> list[int]:

@@ -54,7 +54,7 @@ def read_npz(content: bytes, path: Path) -> Content:
         raise PrunusError(f"{path}: rgb has shape {rgb.shape}; expected {found.xyz.shape}")
     held = colour_bytes(rgb.reshape(-1, 3))
     notes = [] if held is not None else ["no colours: rgb holds something else"]
-    return Content(found.xyz, held, notes=[*found.notes, *notes])
+    return Content(xyz=found.xyz, rgb=held, notes=[*found.notes, *notes])
 
 
 def npy_array(content: bytes) -> NDArray[Any]:
@@ -114,7 +114,7 @@ def _content(values: NDArray[Any], path: Path) -> Content:
         notes.append(f"{columns} columns without names: 1 to 3 are read as x, y, z")
     if values.shape == (3, 3):
         notes.append("3 x 3 numbers: each row is read as a point")
-    return Content(_xyz(values), notes=notes)
+    return Content(xyz=_xyz(values), notes=notes)
 
 
 def _xyz(values: NDArray[Any]) -> Floats:

@@ -30,7 +30,7 @@ DENSEST = 100
 """LZF makes at most 264 bytes of three."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class _Header:
     points: int
     row: np.dtype[Any]
@@ -71,7 +71,13 @@ def _header(content: bytes, path: Path) -> _Header:
             f"{path}: not a readable PCD file: no line DATA ascii, binary or binary_compressed"
         )
     row = _row_of(entries, path)
-    return _Header(_points(entries, path), row, form, start, entries.get("VIEWPOINT") or STILL)
+    return _Header(
+        points=_points(entries, path),
+        row=row,
+        form=form,
+        body=start,
+        viewpoint=entries.get("VIEWPOINT") or STILL,
+    )
 
 
 def _row_of(entries: dict[str, list[str]], path: Path) -> np.dtype[Any]:

@@ -38,7 +38,7 @@ HEAD_BYTES = 2**16
 """What is looked at to see whether a file may be a cloud."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class _Layout:
     """How the rows from line `first` on are written, and what the lines before them tell."""
 
@@ -108,7 +108,9 @@ def _layout(lines: list[str], path: Path) -> _Layout:
                 full = any(_named_in(head, cells) for head, _ in heads)
                 width = cells if full else len(words)
                 names = _names(heads, separator, width, path)
-                return _Layout(number, separator, width, names, counted)
+                return _Layout(
+                    first=number, separator=separator, width=width, names=names, counted=counted
+                )
             heads.append((line, False))
     odd = next((line for line, remark in heads if not remark), None)
     if odd is not None:
@@ -281,11 +283,11 @@ def _unnamed(rows: Floats, path: Path) -> Content:
     """x, y, z first, by convention; colours behind them where they are plausibly that."""
     width = rows.shape[1]
     if width == 3:
-        return Content(rows.copy())
+        return Content(xyz=rows.copy())
     check_first(rows, path)
     rgb, where = _colours(rows, path)
     note = f"{width} columns without names: 1 to 3 are read as x, y, z{where}"
-    return Content(rows[:, :3].copy(), rgb, notes=[note])
+    return Content(xyz=rows[:, :3].copy(), rgb=rgb, notes=[note])
 
 
 def _colours(rows: Floats, path: Path) -> tuple[Bytes | None, str]:

@@ -39,7 +39,7 @@ def read_e57(content: bytes, path: Path) -> Content:
             )
         scans = [_scan(file, header, path) for header in headers if header.point_count]
     if not scans:
-        return Content(np.empty((0, 3)), metres=1.0, sure=True)
+        return Content(xyz=np.empty((0, 3)), metres=1.0, sure=True)
     xyz = np.concatenate([xyz for (xyz, _), _ in scans])
     colours = [rgb for (_, rgb), _ in scans if rgb is not None]
     rgb = np.concatenate(colours) if len(colours) == len(scans) else None
@@ -49,7 +49,7 @@ def read_e57(content: bytes, path: Path) -> Content:
     invalid = sum(lost for _, lost in scans)
     if invalid:
         notes.append(f"{invalid} of {invalid + len(xyz)} points are marked as invalid and left out")
-    return Content(xyz, rgb, 1.0, notes, sure=True)
+    return Content(xyz=xyz, rgb=rgb, metres=1.0, notes=notes, sure=True)
 
 
 def _scan(file: Any, header: Any, path: Path) -> tuple[Columns, int]:

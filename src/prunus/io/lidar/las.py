@@ -56,7 +56,14 @@ def read_las(content: bytes, path: Path) -> Content:
             f"the header gives heights in {unit_of(told.up)}, x and y in {unit_of(told.metres)}: "
             f"heights were brought to {unit_of(told.metres)}"
         )
-    return Content(xyz, rgb, told.metres, [*notes, *told.notes], told.fault, sure=True)
+    return Content(
+        xyz=xyz,
+        rgb=rgb,
+        metres=told.metres,
+        notes=[*notes, *told.notes],
+        fault=told.fault,
+        sure=True,
+    )
 
 
 def _check_records(content: bytes, path: Path) -> None:

@@ -40,7 +40,7 @@ DEEPEST = 40
 """Brackets within brackets, at most."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Reference:
     """Metres in one unit of x and y, and of heights, where told; why they are none; notes."""
 
@@ -76,7 +76,7 @@ def of_keys(directory: bytes, doubles: bytes) -> Reference:
         )
     elif metres is None and projected not in (0, OWN):
         notes.append(f"the header gives EPSG:{projected}, but no unit")
-    return Reference(metres, CODES.get(code.get(VERTICAL, 0)), notes=notes)
+    return Reference(metres=metres, up=CODES.get(code.get(VERTICAL, 0)), notes=notes)
 
 
 def of_wkt(text: str) -> Reference:
@@ -88,7 +88,7 @@ def of_wkt(text: str) -> Reference:
             return Reference(fault=GEOCENTRIC)
         return Reference(fault=DEGREES if _first(root, ROUND) is not None else "")
     upright = _first(root, UPRIGHT)
-    return Reference(_unit(flat), None if upright is None else _unit(upright))
+    return Reference(metres=_unit(flat), up=None if upright is None else _unit(upright))
 
 
 Node = tuple[str, list[Any]]

@@ -103,7 +103,7 @@ def _view(xyz: Floats, rgb: Bytes | None, message: Any, time: int) -> View:
     seen = np.isfinite(xyz).all(axis=1)
     rgb = None if rgb is None else rgb[seen]
     when = time_of(message) or time
-    return View(xyz[seen], rgb, frame_of(message), when, int((~seen).sum()))
+    return View(xyz=xyz[seen], rgb=rgb, frame=frame_of(message), time=when, lost=int((~seen).sum()))
 
 
 def _points_of(bag: Any, topic: str, named: str) -> Callable[[Any], Columns]:

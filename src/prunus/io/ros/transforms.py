@@ -21,7 +21,7 @@ Sample = tuple[bool, str, int, list[float]]
 """Of a transform: whether static, the parent, the time (ns), x y z (m) and x y z w of its turn."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Joint:
     """A frame in its parent: samples at time (S,) ns, place (S, 3) m, turn (S, 4) x y z w."""
 
@@ -125,7 +125,12 @@ def _joint(child: str, rows: list[Sample], named: str) -> Joint:
             f"{named}: the transform from {child!r} to {parents[0]!r} is none; "
             "expected finite numbers and a unit quaternion"
         )
-    return Joint(parents[0], time[order], numbers[order, :3], (numbers[:, 3:] / length)[order])
+    return Joint(
+        parent=parents[0],
+        time=time[order],
+        place=numbers[order, :3],
+        turn=(numbers[:, 3:] / length)[order],
+    )
 
 
 def rotation(turn: Floats) -> Floats:

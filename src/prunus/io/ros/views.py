@@ -11,7 +11,7 @@ from prunus.model import Floats
 from prunus.model.arrays import Bytes
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class View:
     """What a message saw at a time (ns): xyz (P, 3) m in its sensor's frame, rgb (P, 3) or None.
 

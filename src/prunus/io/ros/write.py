@@ -37,7 +37,7 @@ FREE, LOOKED_AT = (0, 158, 115), (213, 94, 0)
 """Colours of the ids of cuts, which poses have no room for."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class CutPoses:
     """Cuts with their ids: places (C, 3), orientations (C, 4) as unit quaternions x y z w.
 

@@ -14,7 +14,7 @@ from prunus.model import Floats, Ints, Label, Skeleton
 from prunus.model.branches import branch_of_rows, branches, orders
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Cylinders:
     """The edges (C,) of a skeleton as wood: edge c ends in row c + 1.
 

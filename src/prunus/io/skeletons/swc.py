@@ -36,7 +36,7 @@ WHOLE = 2**53
 """Whole numbers up to here are what they seem to be when a program wrote them as floats."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Rows:
     """The rows (M,) of a file, in its order: `parent` is the row of the parent, -1 at a root.
 
@@ -112,7 +112,7 @@ def read_rows(path: Path) -> Rows:
         line = lines[int(lost.argmax())]
         raise PrunusError(f"{path}: line {line}: x, y or z is NaN or infinite; expected metres")
     parent = _parents(ids, above, lines, path)
-    return Rows(types, table[:, :3], table[:, 3], parent)
+    return Rows(type=types, xyz=table[:, :3], radius=table[:, 3], parent=parent)
 
 
 def _parents(ids: list[int], above: list[int], lines: list[int], path: Path) -> Ints:

@@ -20,7 +20,7 @@ Stretch = tuple[Floats, Label]
 """A polyline (Q, 3) and its label."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Pieces:
     """Middles of pieces (S, 3), unit directions (S, 3) and labels (S,).
 
@@ -73,7 +73,7 @@ def _pieces(stretches: list[Stretch], tree: Skeleton, kept: Bools) -> Pieces:
     way = np.concatenate([np.zeros((0, 3)), *(ways for _, ways in found)])
     labels = [int(label) for _, label in stretches]
     label = np.repeat(np.array(labels, np.int64), [len(middles) for middles, _ in found])
-    return Pieces(xyz, way, label, _changes(tree, kept))
+    return Pieces(xyz=xyz, way=way, label=label, changes=_changes(tree, kept))
 
 
 def _cut(line: Floats) -> tuple[Floats, Floats]:

@@ -28,7 +28,7 @@ LEEWAY = 0.10
 NONE = -1
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class LengthEdits:
     """What must be done to a skeleton S to make it the truth, in metres.
 

@@ -13,7 +13,7 @@ from prunus.model import Bools, Floats, Ints, Skeleton
 from prunus.model.branches import Branch, branch_of_rows
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Side:
     """One of the two trees, its branches (B), and what they share with those of the other (O).
 
@@ -60,7 +60,9 @@ def _side(skeleton: Skeleton, branches: list[Branch], near: Bools) -> Side:
     met = np.bincount(branch[near.any(axis=1)], minlength=len(branches))
     samples = np.bincount(branch, minlength=len(branches))
     hung = parents(branches, len(skeleton))
-    return Side(skeleton, branches, hung, shared, met, samples)
+    return Side(
+        skeleton=skeleton, branches=branches, parent=hung, shared=shared, met=met, samples=samples
+    )
 
 
 def overlap(ours: Side, theirs: Side) -> Ints:

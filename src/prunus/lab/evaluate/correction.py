@@ -31,7 +31,7 @@ EPSILON = 1e-3
 """What a metre costs between paths of as many edits."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class TrueBranch:
     """A true branch as far as the scan shows it: a point (S, 3) every centimetre from its parent.
 
@@ -45,7 +45,7 @@ class TrueBranch:
     needed: bool
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, kw_only=True)
 class Correction:
     """S* as it grows. `into`: the node before each and the label; `at`: branch and way along it."""
 
@@ -68,7 +68,9 @@ def corrected(predicted: Skeleton, nodes: Floats, truth: Skeleton, counts: Bools
     """
     true = true_branches(predicted, truth, counts)
     nearby = _Nearby.of(nodes, true)
-    work = Correction(nodes, _pairs(predicted), true, int(predicted.superpoint[0]))
+    work = Correction(
+        nodes=nodes, given=_pairs(predicted), true=true, root=int(predicted.superpoint[0])
+    )
     for number, branch in enumerate(true):
         if branch.needed:
             _draw(work, number, nearby)
@@ -91,7 +93,11 @@ def true_branches(predicted: Skeleton, truth: Skeleton, counts: Bools) -> list[T
         size = 1 + round(float(truth.lengths[kept].sum()) / SPACING)
         leaves = _way_to(lines[parent], line[0]) if parent >= 0 else 0.0
         needed = bool(long and grows and not forks)
-        found.append(TrueBranch(branch.label, line[:size], parent, leaves, needed))
+        found.append(
+            TrueBranch(
+                label=branch.label, line=line[:size], parent=parent, leaves=leaves, needed=needed
+            )
+        )
     return found
 
 

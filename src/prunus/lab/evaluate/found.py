@@ -25,7 +25,7 @@ ASIDE = math.radians(45)
 """Two supports go the same way when their directions differ by less, radians."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Asked:
     """What is asked of a label: the share to meet of a true one, metres of a predicted one."""
 
@@ -36,8 +36,8 @@ class Asked:
 
 
 ASKED = (
-    Asked(Label.LEADER, "leaders", 0.80, 0.20),
-    Asked(Label.SIDE_BRANCH, "side_branches", 0.50, 0.08),
+    Asked(label=Label.LEADER, plural="leaders", met=0.80, judged_from=0.20),
+    Asked(label=Label.SIDE_BRANCH, plural="side_branches", met=0.50, judged_from=0.08),
 )
 
 

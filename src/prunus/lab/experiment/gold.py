@@ -137,7 +137,13 @@ def _tree(subject: Corrected) -> Tree:
         cloud = _isolated(scan.cloud, base, params, record.seed or 0)
     truth = with_nodes_every(gold, STEP)
     habits = habits_of(truth.moved(scan.cloud.to_input.inverse()))
-    return Tree(subject.name, cloud, truth, np.ones(len(truth), np.bool_), habits)
+    return Tree(
+        name=subject.name,
+        cloud=cloud,
+        truth=truth,
+        counts=np.ones(len(truth), np.bool_),
+        habits=habits,
+    )
 
 
 def _isolated(cloud: PointCloud, base: Point | None, params: Parameters, seed: int) -> PointCloud:

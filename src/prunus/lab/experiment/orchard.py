@@ -21,7 +21,7 @@ from prunus.model import Bools, CandidateGraph, Floats, Label, PointCloud, Role,
 from prunus.model.branches import branch_of_rows, branches
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Tree:
     """The cloud of one tree alone, as a person leaves it who removes all else by hand.
 
@@ -104,7 +104,7 @@ def target_of(scan: Scan, name: str) -> Tree:
     branch = np.where(at >= 0, branch_of_rows(branches(truth), len(truth))[at], -1)
     counts = counting_rows(truth, scan.xyz[own], branch)
     cloud = PointCloud.from_xyz(scan.xyz[own])
-    return Tree(name, cloud, truth, counts, habits_of(truth))
+    return Tree(name=name, cloud=cloud, truth=truth, counts=counts, habits=habits_of(truth))
 
 
 @dataclass(frozen=True)

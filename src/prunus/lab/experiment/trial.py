@@ -36,7 +36,7 @@ Made = Callable[[Tree], Method]
 """The method of a row, for a tree: those that are told something true of it need to know it."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Way:
     """A row of every table: its method, whose parameters it goes by, whether the base is given."""
 
@@ -70,11 +70,32 @@ def _told_classes(tree: Tree) -> Method:
 
 
 WAYS = (
-    Way("paper", "the method as the paper has it, with its network", _paper, PAPER),
-    Way("default", "ours, the base given", _default, DEFAULT),
-    Way("default, base found", "ours, the base not given", _default, DEFAULT, base=False),
-    Way("default, true classes", "ours, told of all wood what it is", _told_classes, DEFAULT),
-    Way("paper, oracle", "the paper's, every candidate edge told truly", _told_edges, PAPER),
+    Way(
+        name="paper",
+        about="the method as the paper has it, with its network",
+        method=_paper,
+        params=PAPER,
+    ),
+    Way(name="default", about="ours, the base given", method=_default, params=DEFAULT),
+    Way(
+        name="default, base found",
+        about="ours, the base not given",
+        method=_default,
+        params=DEFAULT,
+        base=False,
+    ),
+    Way(
+        name="default, true classes",
+        about="ours, told of all wood what it is",
+        method=_told_classes,
+        params=DEFAULT,
+    ),
+    Way(
+        name="paper, oracle",
+        about="the paper's, every candidate edge told truly",
+        method=_told_edges,
+        params=PAPER,
+    ),
 )
 
 
@@ -112,11 +133,31 @@ def _alike(tree: Tree) -> Method:
 
 SURE = 0.9
 ABLATIONS = (
-    Way("default - votes", "ours, voxels stay where they are", _without_votes, DEFAULT),
-    Way("default - wires", "ours, wires left in", _with_wires, DEFAULT),
-    Way("default - bridges", "ours, no gap bridged", _without_bridges, DEFAULT),
-    Way("default - parents", "ours, branches hang where they grew", _as_cut, DEFAULT),
-    Way("paper - network", "the paper's, every edge as sure as any other", _alike, PAPER),
+    Way(
+        name="default - votes",
+        about="ours, voxels stay where they are",
+        method=_without_votes,
+        params=DEFAULT,
+    ),
+    Way(name="default - wires", about="ours, wires left in", method=_with_wires, params=DEFAULT),
+    Way(
+        name="default - bridges",
+        about="ours, no gap bridged",
+        method=_without_bridges,
+        params=DEFAULT,
+    ),
+    Way(
+        name="default - parents",
+        about="ours, branches hang where they grew",
+        method=_as_cut,
+        params=DEFAULT,
+    ),
+    Way(
+        name="paper - network",
+        about="the paper's, every edge as sure as any other",
+        method=_alike,
+        params=PAPER,
+    ),
 )
 """What each part brings: a method with one part another."""
 

@@ -36,7 +36,7 @@ class Example(Protocol):
         """Keep it."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Made:
     """A scan to make: the file of its example, the orchard, its seed and its number there."""
 
@@ -66,11 +66,17 @@ class Made:
 def examples_to_make(folder: Path, scans: Scans) -> list[Made]:
     """What there is to make in a folder, whether it is made or not."""
     rig = (
-        Made(folder / f"r{seed:06d}.npz", "rig", seed, number, scans.is_clean(number))
+        Made(
+            path=folder / f"r{seed:06d}.npz",
+            orchard="rig",
+            seed=seed,
+            number=number,
+            clean=scans.is_clean(number),
+        )
         for number, seed in enumerate(scans.rig_seeds)
     )
     wide = (
-        Made(folder / f"w{seed:06d}.npz", "wide", seed, number)
+        Made(path=folder / f"w{seed:06d}.npz", orchard="wide", seed=seed, number=number)
         for number, seed in enumerate(scans.wide_seeds)
     )
     return [*rig, *wide]

@@ -36,7 +36,7 @@ def grow_tree(
     both) are where supports grow, drawn when none is given; together they fill at most `room`,
     metres. Shoots on trunk and supports are labelled side branches; these and leaders may fork.
     """
-    wood = Wood(rng, habits or ufo_habits(), lean)
+    wood = Wood(rng=rng, habits=habits or ufo_habits(), lean=lean)
     tall = wood.draw(wood.habits.leader.tall)
     trunk = _grow_trunk(wood)
     arms = _grow_supports(wood, int(trunk[-1]), sides or draw_sides(rng, wood.habits), room)

@@ -41,7 +41,7 @@ class View:
     nominal: RigidMotion
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Scan:
     """A cloud with the truth of every point: kind (P,), tree (P,) and row of that tree (P,).
 
@@ -188,7 +188,7 @@ def _labelled(
     kind[owner == GROUND] = Kind.GROUND
     tree = np.where(owner >= 0, row.pieces.tree[piece], NONE)
     node = np.where(owner >= 0, row.pieces.row[piece], NONE)
-    return Scan(xyz, kind, tree, node, row, views, focal)
+    return Scan(xyz=xyz, kind=kind, tree=tree, node=node, row=row, views=views, focal=focal)
 
 
 def _thinned(rng: np.random.Generator, xyz: Floats, voxel: float) -> Ints:

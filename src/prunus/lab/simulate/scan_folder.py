@@ -21,7 +21,7 @@ from prunus.io.ply import ply_bytes, read_ply, table_of
 from prunus.model import Floats, Ints, Kind, Skeleton
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ScannedTree:
     """A scan with its truth: xyz (P, 3), and the true trees, the target first.
 
@@ -64,7 +64,7 @@ def read_scan(folder: Path) -> ScannedTree:
     xyz = np.column_stack([vertex[axis].astype(np.float64) for axis in "xyz"])
     trees = _read_trees(folder / TREES)
     kind, tree, branch = (vertex[name].astype(np.int64) for name in ("kind", "tree", "branch"))
-    return ScannedTree(folder.name, xyz, kind, tree, branch, trees)
+    return ScannedTree(name=folder.name, xyz=xyz, kind=kind, tree=tree, branch=branch, trees=trees)
 
 
 def scans_in(folder: Path) -> list[Path]:

@@ -16,7 +16,7 @@ STEP = 0.02
 UP = np.array([0.0, 0.0, 1.0])
 
 
-@dataclass
+@dataclass(kw_only=True)
 class Wood:
     """The rows grown so far. `lean` is that of the plane of the tree towards greater Y, radians."""
 

@@ -67,11 +67,14 @@ class Clean(Mode):
 
     def keys(self) -> list[Key]:
         """The kinds, the lasso, undo."""
-        kinds = [Key(str(n), f"Mark as {word}", self._takes(word)) for n, word in enumerate(KINDS)]
+        kinds = [
+            Key(key=str(n), text=f"Mark as {word}", does=self._takes(word))
+            for n, word in enumerate(KINDS)
+        ]
         return [
             *kinds,
-            Key("enter", "Close the lasso", self._close),
-            Key("escape", "Give the lasso up", self._ask),
+            Key(key="enter", text="Close the lasso", does=self._close),
+            Key(key="escape", text="Give the lasso up", does=self._ask),
             *self.history.keys(),
         ]
 

@@ -74,22 +74,22 @@ class Correct(Mode):
     def keys(self) -> list[Key]:
         """All tools have one."""
         labels = [
-            Key(str(n + 1), f"Relabel as {word}", self._labels(Label(n)))
+            Key(key=str(n + 1), text=f"Relabel as {word}", does=self._labels(Label(n)))
             for n, word in enumerate(WORDS)
         ]
         return [
-            Key("delete", "Remove the edge", self._remove_edge),
-            Key("delete", "Remove the branch", self._remove_branch, "shift"),
+            Key(key="delete", text="Remove the edge", does=self._remove_edge),
+            Key(key="delete", text="Remove the branch", does=self._remove_branch, modifier="shift"),
             *labels,
             *[
-                Key(key, f"Relabel the {reach}", self._takes(reach))
+                Key(key=key, text=f"Relabel the {reach}", does=self._takes(reach))
                 for key, reach in REACHES.items()
             ],
-            Key("P", "New path", self._begin),
-            Key("enter", "End the path", self._end),
-            Key("escape", "Give up", self._stop),
-            Key("N", "Move the edge to another node", self._reattach),
-            Key("M", "Move the base", self._base),
+            Key(key="P", text="New path", does=self._begin),
+            Key(key="enter", text="End the path", does=self._end),
+            Key(key="escape", text="Give up", does=self._stop),
+            Key(key="N", text="Move the edge to another node", does=self._reattach),
+            Key(key="M", text="Move the base", does=self._base),
             *self.history.keys(),
         ]
 

@@ -58,8 +58,8 @@ class Cuts(Mode):
     def keys(self) -> list[Key]:
         """One cut on, one back."""
         return [
-            Key("N", "Next cut", lambda: self._step("next")),
-            Key("B", "The cut before", lambda: self._step("back")),
+            Key(key="N", text="Next cut", does=lambda: self._step("next")),
+            Key(key="B", text="The cut before", does=lambda: self._step("back")),
         ]
 
     def enter(self) -> None:

@@ -25,9 +25,9 @@ class History:
     def keys(self) -> list[Key]:
         """Ctrl Z, and Ctrl Y or Ctrl Shift Z."""
         return [
-            Key("Z", "Undo", self.undo, "cmd/ctrl"),
-            Key("Y", "Redo", self.redo, "cmd/ctrl"),
-            Key("Z", "Redo", self.redo, "cmd/ctrl+shift"),
+            Key(key="Z", text="Undo", does=self.undo, modifier="cmd/ctrl"),
+            Key(key="Y", text="Redo", does=self.redo, modifier="cmd/ctrl"),
+            Key(key="Z", text="Redo", does=self.redo, modifier="cmd/ctrl+shift"),
         ]
 
     def undo(self) -> None:

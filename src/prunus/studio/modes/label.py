@@ -57,16 +57,16 @@ class Label(Mode):
     def keys(self) -> list[Key]:
         """A verdict a key."""
         kinds = [
-            Key(str(n), f"Valid: {word.replace('_', ' ')}", self._says(True, word))
+            Key(key=str(n), text=f"Valid: {word.replace('_', ' ')}", does=self._says(True, word))
             for n, word in enumerate(CATEGORIES, 1)
         ]
         return [
-            Key("V", "Valid", self._says(True)),
-            Key("X", "Not valid", self._says(False)),
+            Key(key="V", text="Valid", does=self._says(True)),
+            Key(key="X", text="Not valid", does=self._says(False)),
             *kinds,
-            Key("B", "Back", self._back),
-            Key("N", "Skip", self._skip),
-            Key("backspace", "Take the label back", self._take_back),
+            Key(key="B", text="Back", does=self._back),
+            Key(key="N", text="Skip", does=self._skip),
+            Key(key="backspace", text="Take the label back", does=self._take_back),
         ]
 
     def enter(self) -> None:

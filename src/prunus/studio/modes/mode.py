@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from prunus.studio.desk import Desk
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Key:
     """A key with what it does; `modifier` such as 'shift' or 'cmd/ctrl'."""
 

@@ -36,7 +36,7 @@ SAME_PLACE = 1e-3
 """A superpoint is the one that was labelled when it is within so many metres of where that was."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class LabelledTree:
     """Of one tree the views of each of its graphs; how many labels it has, how many lie on none.
 
@@ -74,7 +74,9 @@ def labelled_tree(path: Path, seed: int, scans: Path | None = None) -> LabelledT
     rng = np.random.default_rng([seed, *os.fsencode(path.parent.name)])
     found, over = labelled_graphs(held, scans)
     graphs = [list(_views(graph, category, rng)) for graph, category in found]
-    return LabelledTree(as_text(path.parent.name), graphs, len(held.labels), len(over))
+    return LabelledTree(
+        name=as_text(path.parent.name), graphs=graphs, labels=len(held.labels), left_out=len(over)
+    )
 
 
 def labelled_graphs(

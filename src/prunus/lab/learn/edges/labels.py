@@ -45,7 +45,7 @@ UNTOLD = -2
 """Category of an edge of which nobody said anything."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class TrueWood:
     """All true trees in view as one table of M nodes.
 
@@ -70,12 +70,12 @@ class TrueWood:
         first = np.cumsum([0, *(own.max() + 1 for own in numbers[:-1])])
         pairs = list(zip(trees, offsets, strict=True))
         return cls(
-            np.concatenate([tree.xyz for tree in trees]),
-            np.concatenate([np.where(t.parent < 0, -1, t.parent + o) for t, o in pairs]),
-            np.concatenate([_ways(tree) for tree in trees]),
-            np.concatenate([categories(tree) for tree in trees]),
-            np.concatenate([own + start for own, start in zip(numbers, first, strict=True)]),
-            np.flatnonzero(np.concatenate(counts)),
+            xyz=np.concatenate([tree.xyz for tree in trees]),
+            parent=np.concatenate([np.where(t.parent < 0, -1, t.parent + o) for t, o in pairs]),
+            way=np.concatenate([_ways(tree) for tree in trees]),
+            category=np.concatenate([categories(tree) for tree in trees]),
+            branch=np.concatenate([own + start for own, start in zip(numbers, first, strict=True)]),
+            counting=np.flatnonzero(np.concatenate(counts)),
         )
 
 

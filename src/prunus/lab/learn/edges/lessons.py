@@ -33,7 +33,7 @@ HARD = (
 PARTS = ("training", "validation", "test")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Lessons:
     """Examples to train on, to validate with, to test on, of so many trees; what to say of them.
 
@@ -86,7 +86,7 @@ def lessons_from(
             _simulated(own, seed, jobs, cover, watch, f"{what} examples")
             for own, what in zip(parts, PARTS, strict=True)
         ]
-        return Lessons(sets, [len(own) for own in parts])
+        return Lessons(sets=sets, trees=[len(own) for own in parts])
     made = labelled_trees(sources.labelled, seed, jobs, scans)
     trees = list(watch(made, "labelled trees", len(sources.labelled)))
     told = _labelled(trees, rng)
@@ -94,7 +94,10 @@ def lessons_from(
     training, *rest = told.sets
     count, *counts = told.trees
     return Lessons(
-        [training + more, *rest], [count + len(sources.simulated), *counts], told.labels, told.notes
+        sets=[training + more, *rest],
+        trees=[count + len(sources.simulated), *counts],
+        labels=told.labels,
+        notes=told.notes,
     )
 
 
@@ -134,7 +137,7 @@ def _labelled(trees: list[LabelledTree], rng: np.random.Generator) -> Lessons:
             f"{sum(labels)} labelled edges; expected more, some to learn from, some to validate "
             "with and some to test on"
         )
-    return Lessons(sets, counts, labels, notes)
+    return Lessons(sets=sets, trees=counts, labels=labels, notes=notes)
 
 
 def _labels(examples: list[Example]) -> int:

@@ -27,7 +27,7 @@ Batch = tuple[tuple[Tensor, ...], Tensor]
 """Inputs of a network, and the category (E,) of each edge."""
 
 
-@dataclass
+@dataclass(kw_only=True)
 class Recipe:
     """Edges drawn from all examples so that the classes are even."""
 

@@ -20,7 +20,7 @@ from prunus.params import Parameters
 from prunus.weights import WEIGHTS
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Course:
     """How an edge network is trained.
 

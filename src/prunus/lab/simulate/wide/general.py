@@ -28,7 +28,7 @@ LEAST_M = 0.06  # shorter limbs are spurs
 SECOND = (0.25, 0.7)  # length of a limb of the second order, as a share of its parent's
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class _Plan:
     """What is drawn once a tree."""
 
@@ -46,14 +46,14 @@ def grow_general(rng: np.random.Generator, ranges: GeneralRanges) -> Skeleton:
     """A tree of a form drawn at random, base at the origin."""
     form = ranges.forms[chosen(rng, {name: form.share for name, form in ranges.forms.items()})]
     plan = _Plan(
-        Wood(rng, ufo_habits(), 0.0),
-        form,
-        ranges,
-        even(rng, form.flat),
-        math.radians(even(rng, ranges.wander)),
-        even(rng, ranges.taper),
-        math.inf if happens(rng, ranges.bare) else log_even(rng, ranges.twigs),
-        math.inf if happens(rng, ranges.spurless) else log_even(rng, ranges.spur_spacing),
+        wood=Wood(rng=rng, habits=ufo_habits(), lean=0.0),
+        form=form,
+        ranges=ranges,
+        flat=even(rng, form.flat),
+        wander=math.radians(even(rng, ranges.wander)),
+        taper=even(rng, ranges.taper),
+        twigs=math.inf if happens(rng, ranges.bare) else log_even(rng, ranges.twigs),
+        spurs=math.inf if happens(rng, ranges.spurless) else log_even(rng, ranges.spur_spacing),
     )
     stem = _grow_stem(plan)
     for limb in _grow_limbs(plan, stem):

@@ -59,4 +59,4 @@ def _labelled(seen: Seen, row: Row) -> Scan:
     kind[seen.piece == SOIL] = Kind.GROUND
     tree = np.where(owned, row.pieces.tree[piece], NONE)
     node = np.where(owned, row.pieces.row[piece], NONE)
-    return Scan(seen.xyz, kind, tree, node, row, (), 0.0)
+    return Scan(xyz=seen.xyz, kind=kind, tree=tree, node=node, row=row, views=(), focal=0.0)
