@@ -52,7 +52,10 @@ class Approach:
 
 
 def ways() -> Floats:
-    """Unit directions (D, 3), house frame, from a cut to where a tool may come from: smaller Y."""
+    """Unit directions (D, 3), house frame, from a cut to where a tool may come from: smaller Y.
+
+    Those of a Fibonacci sphere: even, without poles.
+    """
     steps = np.arange(DIRECTIONS) + 0.5
     y = 1 - 2 * steps / DIRECTIONS
     turn = np.pi * (1 + np.sqrt(5)) * steps

@@ -121,7 +121,7 @@ class _Plane:
 
 
 def _planes(patches: Patches, side: float) -> Iterator[_Plane]:
-    """Planes that hold many flat patches, the fullest first."""
+    """Planes that hold many flat patches, the fullest first (RANSAC, one after another)."""
     flat = patches.take(is_flat(patches))
     band = max(BAND_M, side)
     left = np.ones(len(flat.xyz), np.bool_)

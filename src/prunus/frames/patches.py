@@ -68,6 +68,8 @@ def cells_at(xyz: Floats, side: float) -> tuple[Ints, Ints]:
 class Patches:
     """What lies around some cells: variances (C, 3) ascending, and their axes (C, 3, 3), columns.
 
+    The principal components (PCA) of what is near each.
+
     `xyz` (C, 3) are the cells, `count` (C,) how many cells lie around each.
     """
 

@@ -17,7 +17,8 @@ TINY = 1e-12
 def main_axis(spread: Floats, axis: Floats) -> float:
     """Write the main direction of a second moment (3, 3) into `axis`; how much it is a line.
 
-    That is 1 - the second greatest spread over the greatest: 1 for a line, 0 for a disc or a ball.
+    The first principal component (PCA); how much is 1 - the second greatest spread over the
+    greatest: 1 for a line, 0 for a disc or a ball.
     By squaring: the greatest eigenvalue of spread^64 leaves nothing of the others.
     """
     power = spread / max(spread[0, 0] + spread[1, 1] + spread[2, 2], TINY)

@@ -1,7 +1,7 @@
 """Parents and labels chosen together: branches hang where the grammar likes them best.
 
 By turns the best labels of the tree are found, exactly, and, under these, a better place for every
-branch among all nodes near its foot. Moves of one turn are weighed each for itself.
+branch among all nodes near its foot: a hill climb. Moves of one turn are weighed each for itself.
 """
 
 from __future__ import annotations

@@ -158,7 +158,10 @@ class _Fit:
         return half, radius / WIDE**2 / half
 
     def solved(self, lines: int) -> tuple[Floats, Floats]:
-        """Radii (B, 2) at feet and tips, the tip no thicker, and their covariance (B, 2, 2)."""
+        """Radii (B, 2) at feet and tips, the tip no thicker, and their covariance (B, 2, 2).
+
+        Least squares, weighed anew each round by how far off each width is (Cauchy's weights).
+        """
         before = np.column_stack([self.usual[:, 0], self.usual[:, 2], np.zeros(lines)])
         shared = _norm(
             ERR_OF_ALL,

@@ -1,4 +1,7 @@
-"""Smooth lines through points: penalised least squares, all lines of a tree at once."""
+"""Smooth lines through points: penalised least squares, all lines of a tree at once.
+
+A Whittaker smoother over even stations; its normal equations have five diagonals.
+"""
 
 from __future__ import annotations
 

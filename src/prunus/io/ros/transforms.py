@@ -146,7 +146,7 @@ def rotation(turn: Floats) -> Floats:
 
 
 def between(begin: Floats, end: Floats, share: float) -> Floats:
-    """The unit quaternion at a share (0 to 1) of the shorter arc from one to another."""
+    """The unit quaternion at a share (0 to 1) of the shorter arc from one to another (slerp)."""
     cosine = float(begin @ end)
     end, cosine = (-end, -cosine) if cosine < 0 else (end, cosine)
     angle = float(np.arccos(min(cosine, 1.0)))

@@ -74,7 +74,7 @@ def noise2(rng: np.random.Generator, shape: tuple[int, int], cell: float) -> Flo
 
 
 def noise3(rng: np.random.Generator, xyz: Floats, cell: float) -> Floats:
-    """Smooth noise (S,) at points (S, 3), about even from 0 to 1, in patches of that size."""
+    """Value noise (S,) at points (S, 3), about even from 0 to 1, in patches of that size."""
     at = (xyz - xyz.min(axis=0)) / cell
     low = at.astype(np.int64)
     table, share = rng.random(low.max(axis=0) + 2), at - low

@@ -3,7 +3,7 @@
 A skeleton is a row of N entries: for each node the code of the edge that enters it (edge * LABELS
 + label), or ABSENT, or BASE. Beside it stand the grammar state of each node, the node set as 64-bit
 words, the tips not yet given up, the score, and a key: the exclusive or of random numbers, one for
-each (edge, label). Equal skeletons are one row with a number of copies.
+each (edge, label) (Zobrist hashing). Equal skeletons are one row with a number of copies.
 """
 
 from typing import NamedTuple

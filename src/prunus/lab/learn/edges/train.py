@@ -113,7 +113,10 @@ def between(one: nn.Module, other: nn.Module, share: float) -> nn.Module:
 
 @torch.no_grad()
 def calibrated(net: nn.Module, recipe: Recipe, examples: list[Example]) -> Calibrated:
-    """The network with its log odds stretched and shifted to fit the validation examples."""
+    """The network with its log odds stretched and shifted to fit the validation examples.
+
+    Platt scaling.
+    """
     net.eval()
     pairs = [(net(*seen), category) for seen, category in recipe.judged(examples)]
     found = torch.cat([one for one, _ in pairs])
