@@ -11,6 +11,7 @@ from prunus.cuts.limbs import Limb, Limbs
 from prunus.cuts.nearby import Nearby, told_by_points
 from prunus.cuts.rules import Demand
 from prunus.geometry.near import away_from
+from prunus.geometry.vectors import unit
 from prunus.model import Floats
 from prunus.refine.radii import known_radius
 from prunus.refine.refined import Refined
@@ -91,7 +92,7 @@ def _rise(parent: Limb, foot: Floats) -> float:
     stretch = parent.xyz[np.linalg.norm(parent.xyz - foot, axis=1) <= BESIDE]
     if len(stretch) < 2:
         stretch = parent.xyz
-    return math.degrees(math.asin(abs(_unit(stretch[-1] - stretch[0])[2])))
+    return math.degrees(math.asin(abs(unit(stretch[-1] - stretch[0])[2])))
 
 
 def _nearest_other(limbs: Limbs, limb: Limb) -> tuple[float, str]:
@@ -109,7 +110,3 @@ def _nearest_other(limbs: Limbs, limb: Limb) -> tuple[float, str]:
 def _least(values: Floats) -> float:
     known = values[np.isfinite(values)]
     return float(known.min()) if len(known) else math.nan
-
-
-def _unit(vector: Floats) -> Floats:
-    return np.asarray(vector / max(float(np.linalg.norm(vector)), TINY))

@@ -10,6 +10,7 @@ import numpy as np
 from prunus.cuts.limbs import Limb, Limbs
 from prunus.geometry.exits import stretch_near
 from prunus.geometry.near import away_from, within
+from prunus.geometry.vectors import unit
 from prunus.model import Floats
 from prunus.model.arrays import cubes
 
@@ -99,7 +100,7 @@ def _aside(clear: Floats, beside: Floats, cut: Floats, heading: Floats) -> float
 def _behind(limb: Limb, radius: float, along: float, clear: Floats) -> float:
     """The share of the places straight behind the parent that have wood."""
     foot = limb.at(limb.bark)
-    ahead = _unit(limb.at(along + 2 * AT_CUT) - foot)
+    ahead = unit(limb.at(along + 2 * AT_CUT) - foot)
     places = foot - (2 * radius + np.arange(*BACK))[:, None] * ahead
     if len(clear) == 0:
         return 0.0
@@ -110,7 +111,7 @@ def _behind(limb: Limb, radius: float, along: float, clear: Floats) -> float:
 def _past(limbs: Limbs, limb: Limb, points: Floats) -> float:
     """How many cubes hold points ahead of the tip of a limb that no limb explains."""
     tip = limb.xyz[-1]
-    ahead = _unit(tip - limb.at(max(float(limb.along[-1]) - AT_CUT, 0.0)))
+    ahead = unit(tip - limb.at(max(float(limb.along[-1]) - AT_CUT, 0.0)))
     some = points[(points - tip) @ ahead > AHEAD]
     radius = np.nan_to_num(limbs.skeleton.radius, nan=CUBE)
     for other in limbs.all:
@@ -118,7 +119,3 @@ def _past(limbs: Limbs, limb: Limb, points: Floats) -> float:
             return 0.0
         some = some[away_from(some, other.xyz) > OFF + radius[other.rows[1:]].max()]
     return float(len(np.unique(cubes(some, CUBE)))) if len(some) else 0.0
-
-
-def _unit(vector: Floats) -> Floats:
-    return np.asarray(vector / max(float(np.linalg.norm(vector)), 1e-9))

@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from prunus.geometry.vectors import unit
 from prunus.model import Floats, Ints
 
 ALONG_M = 0.08
@@ -77,7 +78,7 @@ class Tree:
                 break
             length += np.where(goes, self.step[at], 0.0)
             at = np.where(goes, self.parent[at], at)
-        return _unit(self.xyz - self.xyz[at])
+        return unit(self.xyz - self.xyz[at])
 
     @cached_property
     def head(self) -> Floats:
@@ -96,7 +97,7 @@ class Tree:
                 break
             length += np.where(goes, self.step[on], 0.0)
             at = np.where(goes, on, at)
-        return _unit(self.xyz[at] - self.xyz)
+        return unit(self.xyz[at] - self.xyz)
 
     @cached_property
     def turn(self) -> Floats:
@@ -105,9 +106,5 @@ class Tree:
 
     def turn_from(self, hosts: Ints, rows: Ints) -> Floats:
         """How much it would turn (B,) from hosts to rows that hang there: 0 straight on, 2 back."""
-        onward = _unit(self.xyz[rows] - self.xyz[hosts] + ALONG_M * self.head[rows])
+        onward = unit(self.xyz[rows] - self.xyz[hosts] + ALONG_M * self.head[rows])
         return np.asarray(1 - (onward * self.tail[hosts]).sum(axis=1))
-
-
-def _unit(vectors: Floats) -> Floats:
-    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9))

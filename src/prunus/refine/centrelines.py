@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from prunus.geometry.vectors import unit
 from prunus.model import Bools, Floats, Ints, Skeleton
 from prunus.model.branches import Branch, branch_of_rows, branches
 
@@ -71,12 +72,6 @@ class Centrelines:
     def lines(self) -> list[Floats]:
         """The stations of each line."""
         return np.split(self.xyz, self.start[1:-1])
-
-
-def unit(vectors: Floats) -> Floats:
-    """The vectors (..., 3) at length 1; zero where they have none."""
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.maximum(length, TINY))
 
 
 def joined(lines: list[Floats], like: Centrelines) -> Centrelines:

@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from prunus.geometry.vectors import unit
 from prunus.model import Bools, Floats, Ints, Label
-from prunus.refine.centrelines import STEP, Centrelines, carried, joined, unit
+from prunus.refine.centrelines import STEP, Centrelines, carried, joined
 from prunus.refine.feet import feet, within_parents
 from prunus.refine.lines import nearest_on_lines
 from prunus.refine.radii import WIDE, Tapers, tapers

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from prunus.geometry.vectors import unit
 from prunus.model import Bools, Floats, Ints
-from prunus.refine.centrelines import TINY, Centrelines, unit
+from prunus.refine.centrelines import TINY, Centrelines
 from prunus.refine.smoothing import Shares
 
 CAMERA = 1.5

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from prunus.geometry.vectors import unit
 from prunus.model import Bools, Floats, Ints
-from prunus.refine.centrelines import STEP, Centrelines, unit
+from prunus.refine.centrelines import STEP, Centrelines
 from prunus.refine.ribbons import AT_LEAST, window
 
 LONGER = 8

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from prunus.geometry.vectors import unit
 from prunus.io.skeletons.named import names_of
 from prunus.model import Floats, Ints, Label, Skeleton
 from prunus.model.branches import branches
@@ -66,18 +67,18 @@ def frames_along(line: Floats) -> tuple[Floats, Floats, Floats]:
 
     Each normal is turned by the least rotation from one tangent to the next (parallel transport).
     """
-    steps = _unit(np.diff(line, axis=0))
+    steps = unit(np.diff(line, axis=0))
     both = steps[:-1] + steps[1:]
     straight_back = np.linalg.norm(both, axis=1, keepdims=True) < TINY
     both = np.where(straight_back, steps[1:], both)
-    tangents = _unit(np.concatenate([steps[:1], both, steps[-1:]]))
+    tangents = unit(np.concatenate([steps[:1], both, steps[-1:]]))
     sides = np.empty_like(line)
     across = np.eye(3)[np.abs(tangents[0]).argmin()]
-    sides[0] = _unit(np.cross(tangents[0], across))
+    sides[0] = unit(np.cross(tangents[0], across))
     for row in range(1, len(line)):
         before, after = tangents[row - 1 : row + 1]
         lean = sides[row - 1] @ after / max(1 + before @ after, TINY)
-        sides[row] = _unit(sides[row - 1] - lean * (before + after))
+        sides[row] = unit(sides[row - 1] - lean * (before + after))
     return tangents, sides, np.cross(tangents, sides)
 
 
@@ -93,7 +94,3 @@ def _faces(rings: int) -> Ints:
     top = np.column_stack([here, there, np.full(SIDES, last)])
     top[:, :2] += SIDES * (rings - 1)
     return np.concatenate([wall, foot, top])
-
-
-def _unit(vectors: Floats) -> Floats:
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))

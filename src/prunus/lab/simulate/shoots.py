@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from prunus.lab.simulate.wood import STEP, UP, Wood, along, blended, unit
+from prunus.geometry.vectors import unit
+from prunus.lab.simulate.wood import STEP, UP, Wood, along, blended
 from prunus.model import Floats, Ints, Label
 
 TIP = 0.6

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from prunus.geometry.vectors import unit
 from prunus.lab.simulate.habits import Habits, Range
 from prunus.model import Floats, Ints, Label, Skeleton
 
@@ -102,8 +103,3 @@ def smoothed(values: Floats, width: int = 5) -> Floats:
     """The running mean of values (S,)."""
     padded = np.pad(values, width // 2, "edge")
     return np.convolve(padded, np.full(width, 1 / width), "valid")
-
-
-def unit(vectors: Floats) -> Floats:
-    """The vectors (..., 3) at length 1."""
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))

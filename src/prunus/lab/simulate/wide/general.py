@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from prunus.geometry.vectors import unit
 from prunus.lab.simulate.habits import ufo_habits
 from prunus.lab.simulate.wide.settings import (
     Form,
@@ -21,7 +22,7 @@ from prunus.lab.simulate.wide.settings import (
     log_even,
     whole,
 )
-from prunus.lab.simulate.wood import STEP, UP, Wood, along, unit
+from prunus.lab.simulate.wood import STEP, UP, Wood, along
 from prunus.model import Floats, Ints, Label, Skeleton
 
 LEAST_M = 0.06  # shorter limbs are spurs

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from prunus.geometry.vectors import unit
 from prunus.lab.simulate.row import NONE
 from prunus.lab.simulate.scan import Scan
 from prunus.lab.simulate.scan_folder import ScannedTree
-from prunus.lab.simulate.wood import unit
 from prunus.model import Floats, Ints, Label, Role, Skeleton
 from prunus.model.branches import branch_of_rows, branches
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from prunus.geometry.vectors import unit
 from prunus.lab.simulate.row import NONE, Pieces
-from prunus.lab.simulate.wood import unit
 from prunus.model import Bools, Floats, Ints
 
 MOST_SAMPLES = 1_500_000
