@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 from bench.cases import CASES
 
@@ -34,7 +35,7 @@ def main() -> None:
         BASELINE.write_text(json.dumps(baseline, indent=1) + "\n")
 
 
-def _against(before: dict[str, float] | None, value: float) -> str:
+def _against(before: dict[str, Any] | None, value: float) -> str:
     if before is None:
         return ""
     change = value / before["value"] - 1

@@ -38,10 +38,10 @@ def report(told: list[Told], right: Bools, tree: Ints, clear: Bools, hard: Bools
     """Print what each limit lets through of cuts (C,), and of those that are `clear` else."""
     guess = np.zeros(len(right))
     for fold in range(FOLDS):
-        own = np.flatnonzero(tree % FOLDS == fold)
+        left = np.flatnonzero(tree % FOLDS == fold)
         others = np.flatnonzero(tree % FOLDS != fold)
         odds = fit_odds([told[row] for row in others], right[others])
-        guess[own] = [odds(told[row]) for row in own]
+        guess[left] = [odds(told[row]) for row in left]
     for setting, own in (("hard", hard), ("clean", ~hard)):
         print(f"{setting}: {own.sum()} cuts, {right[own].mean():.1%} right")
         for limit in LIMITS:

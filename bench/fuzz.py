@@ -45,7 +45,7 @@ def ply_seeds() -> list[bytes]:
 
 def pcd_seeds() -> list[bytes]:
     """A PCD of each encoding."""
-    from pypcd4 import Encoding, PointCloud
+    from pypcd4 import Encoding, PointCloud  # type: ignore[attr-defined]
 
     seeds = []
     points = np.column_stack([XYZ, RGB[:, 0]]).astype(np.float32)
@@ -175,7 +175,7 @@ def check(content: bytes, path: Path) -> None:
         ours = isinstance(error.__cause__, OURS) and _in_ours(error.__cause__)
         # A recording brings the definitions of its messages, so which fields they have.
         if ours and not (is_bag(path) and isinstance(error.__cause__, AttributeError)):
-            raise error.__cause__ from None
+            raise error.__cause__ from None  # type: ignore[misc]
 
 
 def _in_ours(error: BaseException) -> bool:

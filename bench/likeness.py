@@ -161,11 +161,12 @@ def gaps(xyz: Floats, base: Floats, label: Label) -> tuple[Floats, float]:
     candidate edge spans ends the branch in either scan, so none is longer than 20 cm.
     """
     tree = skeletonize(PointCloud.from_xyz(xyz), base=base).skeleton
-    found, along = [np.zeros(0)], 0.0
+    found: list[Floats] = [np.zeros(0)]
+    along = 0.0
     for branch in branches(tree, label):
         empty = ~touched(tree.xyz[branch.rows], xyz)
         ends = np.flatnonzero(np.diff(np.concatenate([[0], empty, [0]])))
-        found.append(0.01 * (ends[1::2] - ends[::2]))
+        found.append(np.asarray(0.01 * (ends[1::2] - ends[::2]), np.float64))
         along += branch.length
     lengths = np.concatenate(found)
     return lengths[lengths > 0.015], along

@@ -65,7 +65,7 @@ def dressed(
 def spindle(rng: Rng) -> list[Piece]:
     """One upright trunk with short branches all round it, level or nearly so."""
     trunk = trunk_of(rng, (2.2, 3.8), (0.025, 0.06))
-    return trunk + dressed(rng, trunk, rng.integers(15, 45), rng.uniform(0.5, 1.1), (55, 110))
+    return trunk + dressed(rng, trunk, int(rng.integers(15, 45)), rng.uniform(0.5, 1.1), (55, 110))
 
 
 def tiered(rng: Rng) -> list[Piece]:

@@ -48,7 +48,7 @@ def orchard(graph: SeededGraph, params: Parameters) -> Orchard:
         conf[i, j] = conf[j, i] = value
 
     def vector(edge: Edge) -> np.ndarray:
-        return xyz[edge[1]] - xyz[edge[0]]
+        return np.asarray(xyz[edge[1]] - xyz[edge[0]])
 
     def length(edge: Edge) -> float:
         return float(np.linalg.norm(vector(edge)))
@@ -60,11 +60,11 @@ def orchard(graph: SeededGraph, params: Parameters) -> Orchard:
     def grow_penalty(edge: Edge, label: int) -> float:
         angle = float(grow_angle(vector(edge)))
         target = {Label.SUPPORT: angle, Label.LEADER: np.pi / 2 - angle}.get(Label(label), 0.0)
-        return params.grow.c * max(target - params.grow.theta, 0) ** params.grow.p
+        return float(params.grow.c * max(target - params.grow.theta, 0) ** params.grow.p)
 
     def turn_penalty(after: Edge, before: Edge) -> float:
         angle = turn_angle(vector(after), vector(before))
-        return params.turn.c * max(angle - params.turn.theta, 0) ** params.turn.p
+        return float(params.turn.c * max(angle - params.turn.theta, 0) ** params.turn.p)
 
     def is_legal(pairs: Pairs) -> bool:
         return not pairs or offenders(as_skeleton(graph, pairs)) == {}
