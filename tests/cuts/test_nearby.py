@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from prunus.cuts.limbs import Limb, Limbs
-from prunus.cuts.nearby import AT_CUT, NO_LINE, Nearby, nearby, told_by_points
+from prunus.cuts.nearby import AT_CUT_M, NO_LINE_M, Nearby, nearby, told_by_points
 from prunus.model import Floats
 from tests.cuts.trees import drawn
 
@@ -48,14 +48,14 @@ def test_points_beside_the_axis_are_spread_and_aside(limbs: Limbs, branch: Limb)
 
 def test_no_points_at_the_cut_tell_no_line(limbs: Limbs, branch: Limb) -> None:
     told = told_by_points(limbs, branch, 0.01, ALONG, Nearby(NONE, NONE))
-    assert told["spread"] == AT_CUT and told["aside"] == NO_LINE
+    assert told["spread"] == AT_CUT_M and told["aside"] == NO_LINE_M
 
 
 def test_the_wood_of_the_leader_does_not_count(limbs: Limbs, branch: Limb) -> None:
     heights = np.arange(0.3, 0.6, 0.001)
     leader = np.column_stack([np.full(300, 0.005), np.full(300, -0.012), heights])
     told = told_by_points(limbs, branch, 0.01, ALONG, Nearby(leader, NONE))
-    assert told["aside"] == NO_LINE
+    assert told["aside"] == NO_LINE_M
 
 
 def test_a_branch_that_comes_from_behind_its_leader_has_wood_there(

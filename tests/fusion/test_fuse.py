@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from prunus.cli import app
 from prunus.errors import PrunusError
-from prunus.fusion.fuse import VOXEL, fuse
+from prunus.fusion.fuse import VOXEL_M, fuse
 from prunus.fusion.normal_equations import partners
 from prunus.fusion.pixels import company
 from prunus.fusion.registration import turn_of, turned
@@ -126,7 +126,7 @@ def test_poses_of_a_simulated_scan_are_refined() -> None:
     assert moved.max() < 0.005 and turns.max() < 0.15
     assert moved.mean() < before[0].mean() / 2 and turns.mean() < before[1].mean() / 2
     assert all(view.after < view.before for view in fused.views)
-    cells = np.floor((fused.xyz - fused.xyz.min(axis=0)) / VOXEL)
+    cells = np.floor((fused.xyz - fused.xyz.min(axis=0)) / VOXEL_M)
     assert len(np.unique(cells, axis=0)) > 0.99 * len(cells)
 
 

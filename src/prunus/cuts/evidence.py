@@ -16,8 +16,8 @@ from prunus.model import Floats
 from prunus.refine.radii import known_radius
 from prunus.refine.refined import Refined
 
-BESIDE = 0.12
-"""How steeply a limb rises is asked of the stretch within so many metres."""
+BESIDE_M = 0.12
+"""How steeply a limb rises is read off the stretch of it within this distance."""
 TINY = 1e-9
 
 
@@ -26,7 +26,7 @@ class Evidence:
     """What is known of a branch to be cut; NaN where nothing is.
 
     `likely`, how likely it is right, `way`, the least of those from the base to it
-    (`measure.trust`), and `seen`, the share of its length with points. From its shape: `length` and
+    (`trust`), and `seen`, the share of its length with points. From its shape: `length` and
     `diameter` at the cut with its standard deviation `doubt`, metres; `thick`, that over its
     parent's; `bend` at its foot, degrees; `slant`, how far it runs in its parent's bark over the
     parent's radius; `touch`, metres from its tip to the nearest branch that is not its own,
@@ -89,7 +89,7 @@ def _parent_radius(limbs: Limbs, limb: Limb) -> float:
 
 def _rise(parent: Limb, foot: Floats) -> float:
     """How steeply a limb rises about a place on it, degrees."""
-    stretch = parent.xyz[np.linalg.norm(parent.xyz - foot, axis=1) <= BESIDE]
+    stretch = parent.xyz[np.linalg.norm(parent.xyz - foot, axis=1) <= BESIDE_M]
     if len(stretch) < 2:
         stretch = parent.xyz
     return math.degrees(math.asin(abs(unit(stretch[-1] - stretch[0])[2])))

@@ -13,8 +13,9 @@ from prunus.model.branch_names import branch_names
 from prunus.model.branches import Branch, branch_of_rows, branches
 from prunus.refine.radii import known_radius
 
-OUTSET, ONWARD = 0.04, 0.12
-"""A branch bends at its foot when its first so many metres turn into those up to there."""
+FIRST_CHORD_M, NEXT_CHORD_M = 0.04, 0.12
+"""Its bend at the foot is the angle between the chord to the first and that on to the second, by
+length along the branch outside of its parent."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -48,7 +49,7 @@ class Limb:
     @property
     def bend(self) -> float:
         """The turn, degrees, between the first of it outside the bark and what comes then."""
-        foot, knee, on = (self.at(self.bark + way) for way in (0.0, OUTSET, ONWARD))
+        foot, knee, on = (self.at(self.bark + way) for way in (0.0, FIRST_CHORD_M, NEXT_CHORD_M))
         first, then = knee - foot, on - knee
         size = max(float(np.linalg.norm(first) * np.linalg.norm(then)), 1e-12)
         return math.degrees(math.acos(np.clip(first @ then / size, -1, 1)))

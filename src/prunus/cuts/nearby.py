@@ -14,30 +14,30 @@ from prunus.geometry.vectors import unit
 from prunus.model import Floats
 from prunus.model.arrays import cubes
 
-AROUND = 0.30
-"""Points so near to a cut matter to it, metres."""
-CLOSE = 0.18
-"""Of these, those so near tell whether a branch is there."""
-CLEAR = 0.010
-"""Points over so many metres off the bark of the parent are not the parent's."""
-AT_CUT = 0.03
-"""Points so near to the cut tell whether a thin branch is there, metres."""
+AROUND_M = 0.30
+"""Points within this of a cut are looked at."""
+CLOSE_M = 0.18
+"""Points within this of a cut tell whether a branch is there."""
+CLEAR_M = 0.010
+"""Points within this of the parent's bark are taken for the parent's."""
+AT_CUT_M = 0.03
+"""Points within this of a cut tell whether a thin branch is there."""
 LINE = (-0.01, 0.05, 0.025)
 """The line of a branch is that of points so far along from the cut, from and to, and beside it."""
 FEWEST = 6
 """Fewer points tell no line."""
-NO_LINE = 0.02
-"""Where they tell none, it counts as so far aside, metres."""
-BACK = (0.02, 0.10, 0.01)
-"""Wood is looked for behind the parent from here to there, metres, in such steps."""
-BESIDE = 0.012
-"""A place there has wood where points lie so near ..."""
-SOME = 3
-"""... and there are so many of them."""
+NO_LINE_M = 0.02
+"""How far aside the line of a branch counts where its points tell none."""
+BACK_M = (0.02, 0.10, 0.01)
+"""Behind the parent wood is looked for from here, to there, in such steps."""
+BESIDE_M = 0.012
+"""Such a place has wood where points lie within this of it,"""
+MIN_POINTS = 3
+"""and so many of them."""
 PAST, AHEAD, OFF = 0.08, 0.02, 0.02
 """Wood goes on past a tip where points lie so near it, so far ahead, and so far off all bark."""
-CUBE = 0.01
-"""Points past a tip are counted once in cubes of this side, metres."""
+CUBE_M = 0.01
+"""Points past a tip are counted once in cubes of this side."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class Nearby:
 
 def nearby(scan: Floats, cuts: Floats, tips: Floats) -> list[Nearby]:
     """The points of a scan (P, 3) near each of some cuts (C, 3) and tips (C, 3)."""
-    both = zip(_around(scan, cuts, AROUND), _around(scan, tips, PAST), strict=True)
+    both = zip(_around(scan, cuts, AROUND_M), _around(scan, tips, PAST), strict=True)
     return [Nearby(*pair) for pair in both]
 
 
@@ -72,12 +72,12 @@ def told_by_points(
     if parent is None:
         return {}
     cut = limb.at(along)
-    near = points.cut[((points.cut - cut) ** 2).sum(axis=1) < CLOSE**2]
-    clear = near[away_from(near, stretch_near(parent.xyz, cut)) > radius + CLEAR]
+    near = points.cut[((points.cut - cut) ** 2).sum(axis=1) < CLOSE_M**2]
+    clear = near[away_from(near, stretch_near(parent.xyz, cut)) > radius + CLEAR_M]
     beside = away_from(clear, stretch_near(limb.xyz, cut))
-    here = np.linalg.norm(clear - cut, axis=1) < AT_CUT
+    here = np.linalg.norm(clear - cut, axis=1) < AT_CUT_M
     return {
-        "spread": float(beside[here].mean()) if here.any() else AT_CUT,
+        "spread": float(beside[here].mean()) if here.any() else AT_CUT_M,
         "aside": _aside(clear, beside, cut, limb.heading(along)),
         "behind": _behind(limb, radius, along, clear),
         "past": _past(limbs, limb, points.tip),
@@ -90,7 +90,7 @@ def _aside(clear: Floats, beside: Floats, cut: Floats, heading: Floats) -> float
     way = (clear - cut) @ heading
     some = clear[(way > low) & (way < high) & (beside < most)]
     if len(some) < FEWEST:
-        return NO_LINE
+        return NO_LINE_M
     middle = some.mean(axis=0)
     axis = np.linalg.svd(some - middle, full_matrices=False)[2][0]
     off = cut - middle
@@ -100,22 +100,22 @@ def _aside(clear: Floats, beside: Floats, cut: Floats, heading: Floats) -> float
 def _behind(limb: Limb, radius: float, along: float, clear: Floats) -> float:
     """The share of the places straight behind the parent that have wood."""
     foot = limb.at(limb.bark)
-    ahead = unit(limb.at(along + 2 * AT_CUT) - foot)
-    places = foot - (2 * radius + np.arange(*BACK))[:, None] * ahead
+    ahead = unit(limb.at(along + 2 * AT_CUT_M) - foot)
+    places = foot - (2 * radius + np.arange(*BACK_M))[:, None] * ahead
     if len(clear) == 0:
         return 0.0
-    start, _ = within(np.ascontiguousarray(clear), places, BESIDE)
-    return float((np.diff(start) >= SOME).mean())
+    start, _ = within(np.ascontiguousarray(clear), places, BESIDE_M)
+    return float((np.diff(start) >= MIN_POINTS).mean())
 
 
 def _past(limbs: Limbs, limb: Limb, points: Floats) -> float:
     """How many cubes hold points ahead of the tip of a limb that no limb explains."""
     tip = limb.xyz[-1]
-    ahead = unit(tip - limb.at(max(float(limb.along[-1]) - AT_CUT, 0.0)))
+    ahead = unit(tip - limb.at(max(float(limb.along[-1]) - AT_CUT_M, 0.0)))
     some = points[(points - tip) @ ahead > AHEAD]
-    radius = np.nan_to_num(limbs.skeleton.radius, nan=CUBE)
+    radius = np.nan_to_num(limbs.skeleton.radius, nan=CUBE_M)
     for other in limbs.all:
         if len(some) == 0:
             return 0.0
         some = some[away_from(some, other.xyz) > OFF + radius[other.rows[1:]].max()]
-    return float(len(np.unique(cubes(some, CUBE)))) if len(some) else 0.0
+    return float(len(np.unique(cubes(some, CUBE_M)))) if len(some) else 0.0

@@ -11,12 +11,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from prunus.cuts.nearby import AROUND
+from prunus.cuts.nearby import AROUND_M
 from prunus.geometry.near import nearest
 from prunus.model import Floats, Ints
 from prunus.model.arrays import cubes
 
-FREE = AROUND
+FREE = AROUND_M
 """A way is looked at from so far away, metres."""
 AT_BLADE = 0.02
 """Points so near to the cut are the wood that is cut, metres."""

@@ -15,8 +15,8 @@ from prunus.geometry.near import within
 from prunus.model import FRAMES, Floats, PointCloud
 from prunus.model.steps import step_of
 
-LOOKED_AT = 20_000
-"""Of so many points."""
+MAX_POINTS = 20_000
+"""Larger clouds are thinned to so many points before they are looked at."""
 ONE_PLACE_M = 1e-3
 """Points no farther apart are in one place."""
 SMALL_M, LARGE_M = 0.30, 12.0
@@ -55,7 +55,7 @@ def why_no_tree(cloud: PointCloud) -> str:
 
 
 def _some(cloud: PointCloud) -> Floats:
-    return cloud.xyz[:: max(1, len(cloud) // LOOKED_AT)]
+    return cloud.xyz[:: max(1, len(cloud) // MAX_POINTS)]
 
 
 def _small(cloud: PointCloud, xyz: Floats) -> str:

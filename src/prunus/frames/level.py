@@ -10,10 +10,10 @@ from prunus.frames.ground import Ground
 from prunus.model import Floats
 from prunus.model.rotations import upright
 
-TILTED_DEG = 3.0
-"""The ground is followed when it is tilted so much,"""
-RISE_M = 0.06
-"""and rises by so much from end to end: a narrow strip tells little."""
+MIN_TILT_DEG = 3.0
+"""Ground that is tilted less is level."""
+MIN_RISE_M = 0.06
+"""So is ground that rises by less from end to end: a narrow strip tells little of its tilt."""
 
 
 def levelling(ground: Ground) -> tuple[Floats, float]:
@@ -25,7 +25,7 @@ def levelling(ground: Ground) -> tuple[Floats, float]:
     ways = np.column_stack([ground.along, np.cross(ground.up, ground.along)])
     slope = np.abs(np.arcsin(np.clip(ways[2], -1, 1)))
     rise = np.sin(slope) * [ground.length, ground.width]
-    told = (np.degrees(slope) >= TILTED_DEG) & (rise >= RISE_M)
+    told = (np.degrees(slope) >= MIN_TILT_DEG) & (rise >= MIN_RISE_M)
     up = ground.up
     for way in ways.T[~told]:
         aside = np.array([way[0], way[1], 0.0]) / np.hypot(way[0], way[1])

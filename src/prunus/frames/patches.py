@@ -17,8 +17,8 @@ from prunus.model.arrays import cubes
 SIDE_M = 0.03
 """Side of the cells; larger where a scan fills more than `MOST_CELLS` of them."""
 MOST_CELLS = 60_000
-LOOKED_AT = 500_000
-"""Of so many points."""
+MAX_POINTS = 500_000
+"""Larger clouds are thinned to so many points before they are looked at."""
 STRAY_POINTS = 2
 """Cells with fewer points are strays, where most of the scan is denser."""
 MOST_PATCHES = 4000
@@ -35,7 +35,7 @@ class Cells:
     @classmethod
     def of(cls, xyz: Floats) -> Cells:
         """The cells of a scan (P, 3)."""
-        xyz = xyz[:: -(-len(xyz) // LOOKED_AT)]
+        xyz = xyz[:: -(-len(xyz) // MAX_POINTS)]
         middle = (xyz.min(axis=0) + xyz.max(axis=0)) / 2
         xyz = xyz - middle
         side = SIDE_M

@@ -15,20 +15,20 @@ from prunus.growth.chain import Votes
 from prunus.model import Floats, PointCloud, Skeleton
 from prunus.params import Parameters
 
-POINTS = 30_000
-"""Of so many points."""
-SURER = 0.05
-"""A frame is another's better where the tree is surer by so much."""
+MAX_POINTS = 30_000
+"""Larger clouds are thinned to so many points before a tree is looked for."""
+MIN_SURER = 0.05
+"""Another frame is taken where the tree is surer in it by at least this."""
 TINY_M = 1e-9
 
 
 def surest_frame(xyz: Floats, frames: Sequence[str]) -> str:
     """Of some frames that in which a tree in points (P, 3) of a file is surest.
 
-    The first, where no other is better by `SURER`.
+    The first, where no other is better by `MIN_SURER`.
     """
     first, *others = frames
-    best, least = first, sureness_in(xyz, first) + SURER if others else 0.0
+    best, least = first, sureness_in(xyz, first) + MIN_SURER if others else 0.0
     for frame in others:
         sure = sureness_in(xyz, frame)
         if sure > least:
@@ -43,7 +43,7 @@ def sureness_in(xyz: Floats, frame: str) -> float:
 
 def sureness_of(cloud: PointCloud) -> float:
     """How sure the tree that grows on the votes of a cloud is as it stands; 0: there is none."""
-    params = Parameters().changed("input", points=POINTS)
+    params = Parameters().changed("input", points=MAX_POINTS)
     try:
         return sureness(Votes()(cloud, None, params, np.random.default_rng(0), {}).tree())
     except PrunusError:

@@ -19,18 +19,18 @@ from prunus.model import Floats, Ints, RigidMotion, RigView
 from prunus.model.arrays import Bytes, cubes
 from prunus.model.rotations import turn_of
 
-VOXEL = 0.005
-"""One point is kept in each cube of this side, metres."""
-SAMPLES = 60
+VOXEL_M = 0.005
+"""One point is kept in each cube of this side."""
+MIN_SAMPLES = 60
 """A view with fewer samples of branches cannot be placed."""
-FAR = 4.0
-"""A view moved or turned by more than so many standard deviations of the prior does not fit."""
-AGREE = 0.65
-"""Nor does one whose agreement is under this share of the median of the others'."""
-CONFIRMED = 0.2
-"""Nor one whose agreement is under this."""
-APART = 1.8
-"""Nor one whose distance is over so many times the median of the others'."""
+MAX_MOVE = 4.0
+"""A view that moved or turned by more standard deviations of the prior is refused."""
+MIN_AGREEMENT_SHARE = 0.65
+"""A view whose agreement is less, over the median of the others, is refused."""
+MIN_AGREEMENT = 0.2
+"""A view whose agreement is less is refused."""
+MAX_DISTANCE_SHARE = 1.8
+"""A view whose distance is more, over the median of the others, is refused."""
 TINY = 1e-3
 
 _Fault = tuple[float, str]
@@ -86,7 +86,7 @@ def fuse(views: list[RigView], seed: int = 0) -> Fused:
 def merged(
     held: list[Seen], poses: list[RigidMotion], rng: np.random.Generator
 ) -> tuple[Floats, Bytes | None]:
-    """The points of all views in these poses, one in each cube of side `VOXEL`, and their colours.
+    """The points of all views in these poses, one in each cube of `VOXEL_M`, and their colours.
 
     Colours are kept where every view has them.
     """
@@ -156,16 +156,19 @@ def _faults(own: list[Threads], went: list[tuple[float, float]], fit: Fit) -> li
     for k, (moved, turned) in enumerate(went):
         others = np.arange(len(own)) != k
         apart, agree = float(fit.apart[k]), float(fit.agree[k])
-        wanted = np.fmax(AGREE * _median(fit.agree[others]), CONFIRMED)
+        wanted = np.fmax(MIN_AGREEMENT_SHARE * _median(fit.agree[others]), MIN_AGREEMENT)
         faults = [
             (
-                math.inf if len(own[k]) < SAMPLES else 0.0,
+                math.inf if len(own[k]) < MIN_SAMPLES else 0.0,
                 f"only {len(own[k])} samples of branches seen",
             ),
-            (moved / (FAR * MOVED), f"moved by {1000 * moved:.0f} mm"),
-            (turned / (FAR * TURNED), f"turned by {math.degrees(turned):.1f} degrees"),
+            (moved / (MAX_MOVE * MOVED), f"moved by {1000 * moved:.0f} mm"),
+            (turned / (MAX_MOVE * TURNED), f"turned by {math.degrees(turned):.1f} degrees"),
             (float(wanted) / max(agree, TINY), f"{agree:.0%} confirmed by the views near it"),
-            (apart / (APART * _median(fit.apart[others])), f"{1000 * apart:.1f} mm from others"),
+            (
+                apart / (MAX_DISTANCE_SHARE * _median(fit.apart[others])),
+                f"{1000 * apart:.1f} mm from others",
+            ),
         ]
         worst = max(fault for fault in faults if not math.isnan(fault[0]))
         found.append(worst if worst[0] > 1 and others.any() else (0.0, ""))
@@ -179,6 +182,6 @@ def _median(values: Floats) -> float:
 
 
 def _one_each(xyz: Floats, rng: np.random.Generator) -> Ints:
-    """Rows of xyz (P, 3): one, drawn at random, in each cube of side `VOXEL`."""
+    """Rows of xyz (P, 3): one, drawn at random, in each cube of side `VOXEL_M`."""
     order = rng.permutation(len(xyz))
-    return np.sort(order[np.unique(cubes(xyz[order], VOXEL), return_index=True)[1]])
+    return np.sort(order[np.unique(cubes(xyz[order], VOXEL_M), return_index=True)[1]])

@@ -42,14 +42,17 @@ class Straight:
         self._leaves = np.zeros(0, np.bool_)
 
     def leave_wood(self, row: Ints, host: Ints) -> Bools:
-        """Whether the ways (B,) from hosts to rows go through the open."""
+        """Whether the ways (B,) from hosts to rows go through the open.
+
+        Each way once, in the order of the rows, and of the hosts of one row.
+        """
         way = row * len(self.xyz) + host
-        new = np.setdiff1d(way, self._known)
+        place = np.searchsorted(self._known, way)
+        known = np.append(self._known, -1)[place] == way
+        new, at = way[~known], place[~known]
         start, end = (self.xyz[rows] for rows in (new % len(self.xyz), new // len(self.xyz)))
-        known = np.append(self._known, new)
-        order = np.argsort(known)
-        self._leaves = np.append(self._leaves, _leaves_wood(self.threads, start, end))[order]
-        self._known = known[order]
+        self._leaves = np.insert(self._leaves, at, _leaves_wood(self.threads, start, end))
+        self._known = np.insert(self._known, at, new)
         return np.asarray(self._leaves[np.searchsorted(self._known, way)])
 
 

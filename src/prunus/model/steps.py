@@ -6,10 +6,10 @@ import numpy as np
 
 from prunus.model.arrays import Floats
 
-LOOKED_AT = 20_000
-"""Of so many numbers."""
-FEWEST = 50
-"""Of fewer no step can be told."""
+MAX_NUMBERS = 20_000
+"""Longer columns are thinned to so many numbers before they are looked at."""
+MIN_NUMBERS = 50
+"""Of fewer numbers no step can be told."""
 DECIMAL = (1.0, 0.1, 0.01, 0.001)
 """Steps of what was written with few digits."""
 DIGITS = 4
@@ -28,8 +28,8 @@ def step_of(values: Floats) -> tuple[float, bool]:
 
     They may have been rounded again on their way through text.
     """
-    values = values[:: -(-len(values) // LOOKED_AT) or 1]
-    if len(values) < FEWEST or values.min() == values.max():
+    values = values[:: -(-len(values) // MAX_NUMBERS) or 1]
+    if len(values) < MIN_NUMBERS or values.min() == values.max():
         return 0.0, False
     single = float(np.spacing(np.float32(np.quantile(np.abs(values), 0.01))))
     steps = [(step, False) for step in _rounded(values) if step > single]

@@ -48,16 +48,16 @@ CORE = 2.0
 """Points over so many half widths beside a line hardly count."""
 DEEP = (0.73, 0.0004)
 """The axis lies behind the middle of the points by this share of the radius, and so many metres."""
-OUTSIDE = 1.4
-"""A line takes points from where it is so many half widths of its parent beside it."""
-AHEAD = 6
+EXIT_HALF_WIDTHS = 1.4
+"""A line takes points from where it is so many half widths of its parent beside that one's line."""
+DIRECTION_STATIONS = 6
 """The direction in which a line leaves its parent is that of so many stations."""
-SLIDE = 8
-"""Its foot moves by so many stations in a round, at most."""
-MISS = (0.005, 0.6)
-"""Standard deviation of a foot from the straight line: metres, a share of the noise."""
-ASTRAY = 0.04
-"""The same from where the skeleton has it, metres."""
+MAX_SLIDE_STATIONS = 8
+"""The foot of a line moves by so many stations in a round, at most."""
+MISS_ERR = (0.005, 0.6)
+"""Standard deviation of a foot from the straight line: metres, and a share of the noise."""
+ASTRAY_ERR_M = 0.04
+"""Standard deviation of a foot from where the skeleton has it."""
 BENT = (0.45, 0.25, 0.03)
 """A leader leaves its support at that angle, usually, radians, with that standard deviation; and it
 bends up, so that it misses the straight line by so much more, metres."""
@@ -99,8 +99,8 @@ class Starts:
 
     def err(self, noise: float) -> Floats:
         """Standard deviations (B, 2), metres: from the straight line, and from `place`."""
-        miss = np.sqrt(MISS[0] ** 2 + (MISS[1] * noise) ** 2 + self.leaves[:, 2] ** 2)
-        return np.column_stack([miss, np.full(len(miss), ASTRAY)])
+        miss = np.sqrt(MISS_ERR[0] ** 2 + (MISS_ERR[1] * noise) ** 2 + self.leaves[:, 2] ** 2)
+        return np.column_stack([miss, np.full(len(miss), ASTRAY_ERR_M)])
 
 
 def fitted(lines: Centrelines, label: Ints, least: Ints, xyz: Floats) -> Fit:
@@ -159,7 +159,7 @@ def _round(
     half = np.hypot(radius / WIDE, noise)
     depth = _depth(radius, view, fit.around[lines.line])
     front = replace(lines, xyz=lines.xyz - depth)
-    inside = within_parents(front.xyz, lines.start, lines.parent, OUTSIDE * half)
+    inside = within_parents(front.xyz, lines.start, lines.parent, EXIT_HALF_WIDTHS * half)
     points = _shares(front, inside, half, xyz, turn)
     foot = _feet(lines, inside, starts, noise)
     ties = _ties(lines, foot, depth, turn.tied)
@@ -227,7 +227,7 @@ def _feet(lines: Centrelines, inside: Bools, starts: Starts, noise: float) -> In
     ends = lines.last[np.maximum(lines.parent, 0)]
     foot = feet(
         lines.xyz, lines.start, lines.parent, inside, home=starts.place, usual=starts.leaves,
-        err=starts.err(noise), ahead=AHEAD, slide=SLIDE,
+        err=starts.err(noise), ahead=DIRECTION_STATIONS, slide=MAX_SLIDE_STATIONS,
     )  # fmt: skip
     return np.asarray(np.where(lines.goes_on, ends, np.maximum(foot, 0)))
 

@@ -49,8 +49,8 @@ ERR = (0.0005, 0.07, 0.30)
 """Standard deviation of half a width: metres, a share of the radius, a share of the noise."""
 ERR_OF_ALL = (0.0003, 0.05, 0.20)
 """The same of an error that all half widths of a branch share."""
-ALIKE = 0.20
-"""Half widths so near, metres, err alike."""
+CORRELATION_M = 0.20
+"""Half widths within this length of a branch err alike."""
 UNEVEN = {
     Label.TRUNK: 0.06,
     Label.SUPPORT: 0.06,
@@ -59,17 +59,17 @@ UNEVEN = {
 }
 """No branch is as round and tapers as evenly as taken here: standard deviation, a share of the
 radius, which is in the error alone (fitted, see bench.refine)."""
-THIN = 0.010
-"""Where the usual radius is less, metres, the noise is read off the widths."""
+THIN_M = 0.010
+"""Of branches usually thinner than this (radius) the noise is read off the widths."""
 ROUNDS = 3
-FEWEST = 3
+MIN_STATIONS = 3
 """A branch with fewer stations that have a width gets no radius."""
-RAGGED = 4.0
-"""Nor has one whose widths scatter by so many times what they should."""
-FAR = 0.15
-"""Nor has a place so far along the branch, metres, from the next that has a width."""
-LEAST = 0.001
-"""Least radius, metres."""
+MAX_SCATTER = 4.0
+"""A branch whose widths scatter by more, over their expected standard deviation, gets no radius."""
+MAX_GAP_M = 0.15
+"""A station farther along the branch from the next one that has a width gets no radius."""
+MIN_RADIUS_M = 0.001
+"""No radius is less."""
 
 
 class Unknown(IntEnum):
@@ -124,7 +124,7 @@ def tapers(lines: Centrelines, label: Ints, half: Floats) -> Tapers:
     )
     ends, doubt = fit.solved(len(label))
     mix = np.column_stack([1 - share, share])
-    radius = np.maximum((mix * ends[line]).sum(axis=1), LEAST)
+    radius = np.maximum((mix * ends[line]).sum(axis=1), MIN_RADIUS_M)
     uneven = np.array([UNEVEN[Label(number)] for number in label])[line] * radius
     error = np.sqrt(np.einsum("si,sij,sj->s", mix, doubt[line], mix) + uneven**2)
     unknown = _unknown(lines, seen, fit.scatter(ends))
@@ -133,7 +133,7 @@ def tapers(lines: Centrelines, label: Ints, half: Floats) -> Tapers:
 
 def _noise(half: Floats, usual: Floats, shown: Floats) -> float:
     """What adds to half a width where thin wood is as thick as usual."""
-    thin = np.isfinite(half) & (usual < THIN)
+    thin = np.isfinite(half) & (usual < THIN_M)
     if not thin.any():
         return 0.0
     square = (half[thin] ** 2 - (usual[thin] / WIDE) ** 2) / shown[thin] ** 2
@@ -153,7 +153,7 @@ class _Fit:
     def modelled(self, ends: Floats) -> tuple[Floats, Floats]:
         """Half the widths (W,) for radii at feet and tips (B, 2), and their slopes (W,)."""
         mix = np.column_stack([1 - self.share, self.share])
-        radius = np.maximum((mix * ends[self.line]).sum(axis=1), LEAST)
+        radius = np.maximum((mix * ends[self.line]).sum(axis=1), MIN_RADIUS_M)
         half = np.sqrt((radius / WIDE) ** 2 + self.noise**2)
         return half, radius / WIDE**2 / half
 
@@ -174,7 +174,7 @@ class _Fit:
             half, slope = self.modelled(found[:, :2])
             rest = self.half - half - found[self.line, 2]
             design = np.column_stack([slope * (1 - self.share), slope * self.share, slope**0])
-            weight = STEP / ALIKE / self.err**2 / (1 + (rest / self.err / 3) ** 2)
+            weight = STEP / CORRELATION_M / self.err**2 / (1 + (rest / self.err / 3) ** 2)
             normal = trust[:, :, None] * np.eye(3) + self._summed(
                 weight[:, None, None] * design[:, :, None] * design[:, None, :], lines
             )
@@ -195,7 +195,7 @@ class _Fit:
         """How far the widths of each line (B,) scatter, in units of `err`; NaN of too few."""
         rest = (self.half - self.modelled(ends)[0]) / self.err
         count, mean, square = (self._summed(rest**power, len(ends)) for power in (0, 1, 2))
-        some = np.where(count < FEWEST, np.nan, count)
+        some = np.where(count < MIN_STATIONS, np.nan, count)
         return np.asarray(np.sqrt(np.maximum(square / some - (mean / some) ** 2, 0.0)))
 
     def _summed(self, values: Floats, lines: int) -> Floats:
@@ -217,9 +217,9 @@ def _tapering(found: Floats, doubt: Floats) -> Floats:
 
 
 def _unknown(lines: Centrelines, seen: Bools, scatter: Floats) -> Ints:
-    reach = round(FAR / STEP)
+    reach = round(MAX_GAP_M / STEP)
     near = window(lines, seen[:, None].astype(np.float64), reach)[:, 0] > 0
     unknown = np.where(near, Unknown.KNOWN, Unknown.FAR_FROM_POINTS)
-    unknown[(scatter > RAGGED)[lines.line]] = Unknown.RAGGED
+    unknown[(scatter > MAX_SCATTER)[lines.line]] = Unknown.RAGGED
     unknown[np.isnan(scatter)[lines.line]] = Unknown.FEW_POINTS
     return unknown.astype(np.int64)

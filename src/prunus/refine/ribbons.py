@@ -15,10 +15,10 @@ from prunus.model import Bools, Floats, Ints
 from prunus.refine.centrelines import TINY, Centrelines
 from prunus.refine.smoothing import Shares
 
-CAMERA = 1.5
-"""The cameras stand about so far before the tree, metres, at smaller Y ..."""
-HIGH = 1.45
-"""... and so high over its base."""
+CAMERA_AWAY_M = 1.5
+"""Usual distance of the cameras from the tree, toward smaller Y."""
+CAMERA_HEIGHT_M = 1.45
+"""Usual height of the cameras over the base of the tree."""
 FAN = 0.5
 """Several stand side by side along the row: places are seen askew by this share of their way from
 the middle."""
@@ -54,7 +54,9 @@ class View:
 def camera_place(lines: Centrelines, xyz: Floats) -> Floats:
     """The middle (3,) of the cameras that saw a tree, so far as its points (P, 3) tell."""
     ends = np.quantile(xyz[:, 0], (0.02, 0.98))
-    return np.array([ends.mean(), np.median(xyz[:, 1]) - CAMERA, lines.xyz[0, 2] + HIGH])
+    return np.array(
+        [ends.mean(), np.median(xyz[:, 1]) - CAMERA_AWAY_M, lines.xyz[0, 2] + CAMERA_HEIGHT_M]
+    )
 
 
 @dataclass(frozen=True, eq=False)

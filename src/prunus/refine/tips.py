@@ -11,26 +11,26 @@ from prunus.model import Bools, Floats, Ints
 from prunus.refine.centrelines import STEP, Centrelines
 from prunus.refine.ribbons import AT_LEAST, window
 
-LONGER = 8
-"""A tip is drawn out by so many stations, straight, and keeps those that points follow."""
-STRAIGHT = 6
-"""Its direction is that of the last so many stations."""
-GAP = 3
-"""So many stations without points are no end."""
-USUAL = 0.25
-"""Nor is a place with this share of the points that are usual on the line."""
+DRAWN_OUT_STATIONS = 8
+"""A tip is drawn out straight by so many stations, and keeps those that points follow."""
+DIRECTION_STATIONS = 6
+"""The direction of a tip is that of so many stations, the last ones."""
+GAP_STATIONS = 3
+"""A gap of so many stations without points is not yet the end of a branch."""
+MIN_DENSITY = 0.25
+"""A station holds wood where it has this share of the points usual on its line."""
 
 
 def drawn_out(lines: Centrelines) -> tuple[Centrelines, Ints]:
     """The lines with longer free ends, and for each station (S,) the one it was, or hangs on."""
-    more = np.where(lines.free, LONGER, 0)
+    more = np.where(lines.free, DRAWN_OUT_STATIONS, 0)
     size = np.diff(lines.start) + more
     start = np.concatenate([[0], size.cumsum()])
     line = np.repeat(np.arange(len(size)), size)
     rank = np.arange(start[-1]) - start[line]
     was = np.minimum(lines.first[line] + rank, lines.last[line])
     beyond = (lines.first[line] + rank - was)[:, None]
-    before = np.maximum(lines.last - STRAIGHT, lines.first)
+    before = np.maximum(lines.last - DIRECTION_STATIONS, lines.first)
     way = unit(lines.xyz[lines.last] - lines.xyz[before])
     xyz = lines.xyz[was] + STEP * beyond * way[line]
     return replace(lines, xyz=xyz, start=start), was
@@ -53,14 +53,14 @@ def kept(lines: Centrelines, was: Ints, count: Floats, least: Ints) -> Bools:
 
 def _end(count: Floats, old: int) -> int:
     """The last station of a line, given points (R,) at its stations; `old` was the last."""
-    enough = max(AT_LEAST, USUAL * float(np.median(count[: old + 1])))
+    enough = max(AT_LEAST, MIN_DENSITY * float(np.median(count[: old + 1])))
     held = np.flatnonzero(count >= enough)
     if len(held) == 0:
         return old
     inner = held[held <= old]
     end = int(inner[-1]) if len(inner) else old
     for station in held[held > end].tolist():
-        if station - end > GAP:
+        if station - end > GAP_STATIONS:
             break
         end = station
     return end
