@@ -106,8 +106,8 @@ def _trained(
     for folder in folders:
         done, in_work = corrected_in(folder, scans)
         corrected += done
-        for name in in_work:
-            waiting.say(f"{folder / name}: not marked as done, so left out")
+        for tree in in_work:
+            waiting.say(f"{folder / tree}: not marked as done, so left out")
     course = Course(
         learner=LEARNERS[name], folder=output, recipe=settings, corrected=corrected, start=start,
         jobs=jobs,

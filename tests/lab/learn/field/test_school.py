@@ -27,6 +27,7 @@ from prunus.lab.learn.training import Training, read_checkpoint, train  # noqa: 
 from prunus.lab.simulate.scan import Scan  # noqa: E402
 from prunus.model import Role  # noqa: E402
 from tests.conftest import field_scan  # noqa: E402
+from tests.test_cli import prunus  # noqa: E402
 
 FEW = {"wide": 0, "first_wide": 0, "rig": 2, "first_rig": 0, "clean_every": 4}
 TINY = recipe_of(None).model_dump() | {
@@ -248,3 +249,20 @@ def test_the_losses_fall_on_one_scan(tmp_path: Path, monkeypatch: pytest.MonkeyP
     for name in ("role", "log_radius", "toward_foot"):
         assert last[name] < 0.9 * first[name], name
     assert last["accuracy"] > first["accuracy"]
+
+
+def test_a_tree_still_in_work_is_named_and_left_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    courses = list[Course]()
+
+    def begun(course: Course, *_: Any) -> list[str]:
+        courses.append(course)
+        return ["done"]
+
+    monkeypatch.setattr("prunus.lab.experiment.gold.corrected_in", lambda *_: ([], ["half"]))
+    monkeypatch.setattr("prunus.lab.learn.school.school", begun)
+    done = prunus("train", tmp_path, "--network", "field", "-o", tmp_path / "run")
+    assert done.exit_code == 0, done.output
+    assert f"{tmp_path / 'half'}: not marked as done, so left out" in done.stderr
+    assert [one.learner.name for one in courses] == ["field"]
