@@ -14,6 +14,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
+from prunus.geometry.vectors import unit
 from prunus.model import Bools, Floats, Ints, Role
 
 LEAST_WOOD = 0.5  # probability of wood from which a voxel votes
@@ -108,8 +109,7 @@ def gather_votes(field: PointField) -> Threads:
 
     xyz = mean(voted)
     role = np.exp(mean(np.log(np.maximum(field.role, LEAST_CHANCE))))
-    direction = mean(field.toward_foot)
-    toward_foot = direction / np.maximum(np.linalg.norm(direction, axis=1), 1e-9)[:, None]
+    toward_foot = unit(mean(field.toward_foot))
     along = ((field.xyz - xyz[node]) * toward_foot[node]).sum(axis=1)
     beyond = np.zeros((len(xyz), 2))
     np.maximum.at(beyond, node, np.column_stack([-along, along]))

@@ -16,6 +16,7 @@ from prunus.fusion.axes import contract
 from prunus.fusion.views import Seen
 from prunus.geometry.near import within
 from prunus.geometry.neighbours import cover
+from prunus.geometry.vectors import unit
 from prunus.model import Floats, Ints
 
 THIN = 0.004
@@ -46,7 +47,6 @@ ACROSS_ERR = (0.0007, 0.05, 0.015)
 metres for surroundings that are no line at all."""
 DEPTH_ERR = (0.0021, 0.0015, 0.15)
 """Standard deviations of its depth: metres at 1 m, growing as z^2; metres; shares of that width."""
-TINY = 1e-9
 CLOUD_ERR = 0.004
 """Standard deviation of a sample of a partial cloud, metres, any direction."""
 
@@ -84,7 +84,7 @@ def threads_of(seen: Seen, rng: np.random.Generator) -> Threads:
             doubt=np.ascontiguousarray(doubt),
             held=middle,
         )
-    ray = surface / np.maximum(np.linalg.norm(surface, axis=1, keepdims=True), TINY)
+    ray = unit(surface)
     wide = _half_width(surface - drawn, axis, ray, start, near)
     xyz, axis, ray, line = drawn[rows], axis[rows], ray[rows], line[rows]
     xyz = xyz + _to_axis(xyz, axis, ray, wide, seen.pixel)
@@ -100,8 +100,7 @@ def _half_width(off: Floats, axis: Floats, ray: Floats, start: Ints, near: Ints)
     The points (P,) were drawn by `off` (P, 3). A ribbon evenly filled from -h to h has the mean
     square h^2 / 3.
     """
-    side = np.cross(axis, ray)
-    side /= np.maximum(np.linalg.norm(side, axis=1, keepdims=True), TINY)
+    side = unit(np.cross(axis, ray))
     square = (off * side).sum(axis=1) ** 2
     total = np.concatenate([[0.0], square[near].cumsum()])
     return np.asarray(np.sqrt(3 * np.diff(total[start]) / np.maximum(np.diff(start), 1)))

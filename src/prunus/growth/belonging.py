@@ -34,10 +34,10 @@ def likeliest(graph: ThreadGraph, feet: Ints, path: Path = SHIPPED) -> Ints:
 
     Of a single foot everything is, and no network is asked. PrunusError where the file holds none.
     """
-    by_cost = cheapest(graph, feet)
     if len(feet) == 1:
-        return by_cost
+        return cheapest(graph, feet)
     cost, before = dijkstra(graph.belonging, indices=feet, return_predecessors=True)
+    by_cost = np.where(np.isfinite(cost).any(axis=0), feet[cost.argmin(axis=0)], NOWHERE)
     tokens = Tokens.of(graph.threads, feet, cost)
     odds = log_odds(asked(tokens, path))[:, tokens.of_node]
     own = np.array([likely_part(*one) for one in zip(cost, before, odds, strict=True)])

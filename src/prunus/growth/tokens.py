@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from prunus.field.votes import Threads, cover
+from prunus.geometry.vectors import unit
 from prunus.model import Floats, Ints, Role
 
 TOKEN_M = 0.06
@@ -50,11 +51,10 @@ class Tokens:
             sums = [np.bincount(token, threads.votes * column) for column in values.T]
             return np.asarray(np.column_stack(sums) / votes[:, None])
 
-        way = mean(threads.toward_foot)
         return cls(
             xyz=mean(threads.xyz),
             role=mean(threads.role),
-            toward_foot=way / np.maximum(np.linalg.norm(way, axis=1), 1e-9)[:, None],
+            toward_foot=unit(mean(threads.toward_foot)),
             radius=mean(threads.radius[:, None])[:, 0],
             votes=votes,
             of_node=token,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from prunus.geometry.vectors import unit
 from prunus.model import Bools, Floats, Ints, Role, Skeleton, Told
 from prunus.model.branches import Branch, branch_of_rows, branches
 from prunus.model.role import label_chances
@@ -126,8 +127,7 @@ def of_tree(known: Known) -> Evidence:
 
 def _beside(skeleton: Skeleton, owner: Ints) -> Bools:
     """Along which rows (M,) another branch runs beside their own."""
-    way = skeleton.xyz - skeleton.xyz[np.maximum(skeleton.parent, 0)]
-    way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), TINY)
+    way = unit(skeleton.xyz - skeleton.xyz[np.maximum(skeleton.parent, 0)])
     one, other = cKDTree(skeleton.xyz).query_pairs(BESIDE_M, output_type="ndarray").T
     along = np.abs((way[one] * way[other]).sum(axis=1)) > ALONG_COS
     beside = np.zeros(len(skeleton), np.bool_)
