@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import typer
 
 from prunus.commands.options import OutputFolder, Seed
-from prunus.files.work_folder import SCAN
+from prunus.commands.skeletonize import report_on
+from prunus.files.work_folder import REPORT, SCAN
 
 if TYPE_CHECKING:
     from prunus.commands.progress import Waiting
-from prunus.commands.skeletonize import report_on
 
 
 def demo(
@@ -31,4 +31,4 @@ def demo(
     base = tuple(truth.xyz[0].tolist())
     options = Options(base=base, frame="z-up", seed=seed)
     report_on(waiting, [Task(output / SCAN, output)], [], options, False, 1)
-    waiting.tell([*compare(output, truth), f"  now open {output / 'report.html'}"])
+    waiting.tell([*compare(output, truth), f"  now open {output / REPORT}"])
